@@ -1,104 +1,10 @@
-//! Parameter smoothing, and the parameter values that sounding voices follow.
+//! The parameter values that sounding voices follow.
 
 use super::gain::{exciter_gain, pan_gains};
-use super::modulation::{Bus, NoteModulation, Settings, rate_at};
+use super::modulation::rate_at;
 use crate::dsp::power_of_two;
-use crate::dsp::ramp::Ramp;
-use crate::params::{Choice, NoteValue, PARAM_COUNT, PARAMS, Param, Values};
+use crate::params::{Choice, NoteValue, Param};
 use crate::units::gain_from_db;
-
-/// Parameter smoothing: a ramp for each parameter to its last value. Real-time safe.
-pub(crate) struct Smoother {
-    sample_rate: f64,
-    /// Beats per second.
-    beat_rate: f64,
-    ramps: [Ramp; PARAM_COUNT],
-    /// Frames until all ramps have reached their targets.
-    moving: u32,
-    /// Number of changes of a parameter or of the tempo so far.
-    changes: u32,
-    /// The controls after all ramps have ended.
-    arrived: Controls,
-}
-
-impl Smoother {
-    /// All parameters at `values`, without ramps.
-    pub(crate) fn new(sample_rate: f64, values: &Values, beat_rate: f64) -> Self {
-        let ramps = std::array::from_fn(|index| Ramp::at_rest(values.get(PARAMS[index].param)));
-        let arrived = Controls::new(|param| values.get(param), beat_rate);
-        Self { sample_rate, beat_rate, ramps, moving: 0, changes: 0, arrived }
-    }
-
-    /// Sets the tempo, in beats per second.
-    pub(crate) fn set_tempo(&mut self, beat_rate: f64) {
-        self.beat_rate = beat_rate;
-        self.changes = self.changes.wrapping_add(1);
-        self.arrived = self.at(u32::MAX);
-    }
-
-    /// Beats per second.
-    pub(crate) fn beat_rate(&self) -> f64 {
-        self.beat_rate
-    }
-
-    /// Starts a parameter's ramp to a value.
-    pub(crate) fn set(&mut self, param: Param, value: f32) {
-        let ramp = &mut self.ramps[param as usize];
-        if let Some(frames) = param.info().smoothing_frames(self.sample_rate)
-            && ramp.after(u32::MAX) != value
-        {
-            ramp.set(value, frames);
-            self.changes = self.changes.wrapping_add(1);
-            self.moving = self.moving.max(frames);
-            self.arrived = self.at(u32::MAX);
-        }
-    }
-
-    /// Advances the ramps by `frames` frames.
-    pub(crate) fn advance(&mut self, frames: u32) {
-        if self.moving > 0 {
-            self.ramps.iter_mut().for_each(|ramp| ramp.advance(frames));
-            self.moving = self.moving.saturating_sub(frames);
-        }
-    }
-
-    /// The controls `frames` frames from now.
-    pub(crate) fn after(&self, frames: u32) -> Controls {
-        if frames >= self.moving { self.arrived } else { self.at(frames) }
-    }
-
-    fn at(&self, frames: u32) -> Controls {
-        Controls::new(|param| self.value_after(param, frames), self.beat_rate)
-    }
-
-    /// The modulators' settings `frames` frames from now; `before` are the last ones.
-    pub(crate) fn settings_after(&self, frames: u32, before: &Settings, bus: &Bus) -> Settings {
-        before.next(bus, |param| self.value_after(param, frames), self.beat_rate)
-    }
-
-    /// The modulators' settings for a note with host offsets of its own.
-    pub(crate) fn own_settings(&self, own: &NoteModulation, frames: u32, before: &Settings, bus: &Bus) -> Settings {
-        let value = |param| own.after(param, frames).unwrap_or_else(|| self.value_after(param, frames));
-        before.own(bus, value, self.beat_rate)
-    }
-
-    /// Number of changes of a parameter or of the tempo so far; none if a ramp will still be running `frames` frames
-    /// from now.
-    pub(crate) fn changes(&self, frames: u32) -> Option<u32> {
-        (frames >= self.moving).then_some(self.changes)
-    }
-
-    /// The value of a parameter, `frames` frames from now.
-    pub(crate) fn value_after(&self, param: Param, frames: u32) -> f32 {
-        self.ramps[param as usize].after(frames)
-    }
-
-    /// The controls of a note with host offsets of its own, `frames` frames from now.
-    pub(crate) fn modulated(&self, modulation: &NoteModulation, frames: u32) -> Controls {
-        let value = |param: Param| modulation.after(param, frames);
-        Controls::new(|param| value(param).unwrap_or_else(|| self.value_after(param, frames)), self.beat_rate)
-    }
-}
 
 /// The parameters that voices follow, at one instant, in the units that voices use.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -148,7 +54,8 @@ pub(crate) struct Controls {
 }
 
 impl Controls {
-    fn new(value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
+    /// The controls with parameters from `value`, at a tempo in beats per second.
+    pub(crate) fn new(value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
         let (coarse, fine) = (value(Param::Tune), value(Param::Fine));
         let (gain_db, pan) = (value(Param::Gain), value(Param::Pan));
         let (gain_left, gain_right) = gains(gain_db, pan);
@@ -251,32 +158,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_changed_parameter_arrives_after_its_time_and_no_sooner() {
-        let mut smoother = Smoother::new(48_000.0, &Values::default(), 2.0);
-        smoother.set(Param::Decay, 2.0);
-        assert_eq!(smoother.after(0).decay, 1.0);
-        assert!((smoother.after(480).decay - 1.5).abs() < 1e-6);
-        smoother.advance(480);
-        smoother.set(Param::Decay, 2.0);
-        assert_eq!(smoother.after(480).decay, 2.0, "setting the same target again does not start anew");
-    }
-
-    #[test]
     fn the_default_sound_is_centred_and_untuned() {
-        let mut values = Values::default();
-        values.set(Param::Gain, 0.0);
-        let controls = Smoother::new(48_000.0, &values, 2.0).after(0);
+        let value = |param: Param| if param == Param::Gain { 0.0 } else { param.info().default };
+        let controls = Controls::new(value, 2.0);
         assert_eq!((controls.gain_left, controls.gain_right, controls.tune), (1.0, 1.0, 0.0));
     }
 
     #[test]
     fn a_synchronised_vibrato_follows_the_tempo() {
-        let mut smoother = Smoother::new(48_000.0, &Values::default(), 2.0);
-        for (choice, rate) in [("off", 5.0), ("1/1", 0.5), ("1/4", 2.0), ("1/8T", 6.0), ("1/4.", 4.0 / 3.0)] {
-            smoother.set(Param::VibratoSync, Param::VibratoSync.info().parse(choice).unwrap());
-            assert!((smoother.after(0).vibrato_rate - rate).abs() < 1e-12, "{choice}");
+        for (choice, beat_rate, rate) in [
+            ("off", 2.0, 5.0),
+            ("1/1", 2.0, 0.5),
+            ("1/4", 2.0, 2.0),
+            ("1/8T", 2.0, 6.0),
+            ("1/4.", 2.0, 4.0 / 3.0),
+            ("1/4.", 1.0, 2.0 / 3.0),
+        ] {
+            let sync = Param::VibratoSync.info().parse(choice).unwrap();
+            let value = |param: Param| if param == Param::VibratoSync { sync } else { param.info().default };
+            assert!((Controls::new(value, beat_rate).vibrato_rate - rate).abs() < 1e-12, "{choice}");
         }
-        smoother.set_tempo(1.0);
-        assert!((smoother.after(0).vibrato_rate - 2.0 / 3.0).abs() < 1e-12);
     }
 }

@@ -7,7 +7,7 @@
 //! | `event`, `midi`, `channel`, `banks`, `zones` | events; MIDI messages as events; controllers; program changes; MPE |
 //! | `pressed` | the keys and pedals that a stream of events holds down |
 //! | `note`, `expression` | a note, its note expressions, how events select notes |
-//! | `controls`, `instrument` | parameter smoothing; one sound of a kit with its present values |
+//! | `knobs`, `controls`, `instrument` | the state of each knob; what voices follow; one sound of a kit |
 //! | `modulation/` | routes and their sources, and the host's offsets |
 //! | `voice/`, `damping` | one voice: strikes, pitch, decay, gain, tension, bloom, energy; its strikes apart, for labels |
 //! | `voice_manager/` | which notes sound, and in which voices: note on and off, mono, pedals, slots, the pool |
@@ -27,6 +27,7 @@ pub mod event;
 mod expression;
 mod gain;
 mod instrument;
+mod knobs;
 pub mod midi;
 mod modulation;
 pub mod note;

@@ -79,73 +79,18 @@ pub struct ParamInfo {
     pub help: &'static str,
 }
 
-mod body;
 mod choice;
-mod control;
-mod envelope;
-mod exciter;
 mod knob;
-mod lfo;
-mod macros;
-mod output;
-mod pitch;
-mod routes;
-mod space;
+mod table;
 mod text;
 mod values;
-mod voices;
 
 pub use choice::{
     Choice, Coefficients, GlideBy, GlideWhen, Limiter, MalletPulse, NoiseDecay, NoteOff, NoteValue, PlayMode, Priority,
     Scope, Shape, Space, SpaceMaterial, StringsTuning,
 };
+pub use table::{PARAM_COUNT, PARAMS, Param};
 pub use values::Values;
-
-/// The names of the choices of a row.
-macro_rules! choice_names {
-    () => {
-        &[]
-    };
-    ($choices:ident) => {
-        $choices::NAMES
-    };
-}
-
-/// Makes [`Param`] and [`PARAMS`] of the rows of all modules.
-macro_rules! table {
-    ({ $($section:literal {
-        $($param:ident $id:literal $name:literal, $unit:ident $min:literal..$max:literal = $default:literal,
-          $curve:ident, $change:expr, $($fixed:ident)? [$($choices:ident)?], $help:literal;)*
-    })* }) => {
-        /// A parameter, in table order.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        pub enum Param {
-            $($(#[doc = $help] $param,)*)*
-        }
-
-        /// The parameter table, indexed by `Param as usize`.
-        pub static PARAMS: &[ParamInfo] = &[
-            $($(ParamInfo {
-                param: Param::$param, id: $id, name: $name, section: $section, unit: Unit::$unit,
-                min: $min, max: $max, default: $default, curve: Curve::$curve, change: $change,
-                is_fixed: { const FIXED: &[&str] = &[$(stringify!($fixed))?]; !FIXED.is_empty() },
-                choices: choice_names!($($choices)?), help: $help,
-            },)*)*
-        ];
-
-        /// Number of parameters.
-        pub const PARAM_COUNT: usize = [$($(Param::$param,)*)*].len();
-    };
-}
-
-use Change::{AtOnce, NextNote, Smoothed};
-use {
-    body::body, control::control, envelope::envelope, exciter::exciter, lfo::lfo, macros::macros, output::output,
-    pitch::pitch, routes::routes, space::space, voices::voices,
-};
-
-// Each macro appends its rows to those before it and passes all of them to the next macro.
-exciter! { {} body pitch control lfo envelope macros routes voices space output table }
 
 impl Param {
     /// This parameter's row of the table.

@@ -194,18 +194,13 @@ impl Modulators {
         self.set_source(Source::Key, key_position(pitch));
     }
 
-    /// Copies the settings of the instrument, or those of this note if `are_own`, and the phases of the shared
-    /// oscillators.
-    pub(crate) fn follow(&mut self, settings: &Settings, are_own: bool, shared: &SharedLfos) {
-        if are_own || settings.serial != self.settings.serial {
+    /// Copies the settings, if there are new ones, and the phases of the shared oscillators. With new settings come new
+    /// controls without modulation, so the next control tick computes every destination.
+    pub(crate) fn follow(&mut self, settings: Option<&Settings>, shared: &SharedLfos) {
+        if let Some(settings) = settings {
             (self.settings, self.unsettled) = (*settings, true);
         }
         self.share(shared);
-    }
-
-    /// Makes the next control tick compute every destination, since the controls were replaced by unmodulated ones.
-    pub(crate) fn unsettle(&mut self) {
-        self.unsettled = true;
     }
 
     /// The routes of the voice, to make [`Settings`] for this note only.

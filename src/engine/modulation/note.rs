@@ -66,14 +66,20 @@ impl NoteModulation {
         self.moved.iter_mut().flatten().for_each(|moved| moved.has_offset = false);
     }
 
-    /// Starts a ramp to the target of each parameter that has or had an offset: its value in `base` plus the offset,
-    /// or, if the offset was dropped, its value in `played` (the instrument with its own modulation). With `at_once`,
-    /// for a note that has not sounded yet, the value jumps.
-    pub(crate) fn aim(&mut self, base: &Values, played: &Values, sample_rate: f64, at_once: bool) {
+    /// Starts a ramp to the target of each parameter that has or had an offset: the instrument's `value` plus the offset,
+    /// or, if the offset was dropped, the value in `played`, with the instrument's own modulation. With `at_once`, for a
+    /// note that has not sounded yet, the value jumps.
+    pub(crate) fn aim(
+        &mut self,
+        value: impl Fn(Param) -> f32,
+        played: impl Fn(Param) -> f32,
+        sample_rate: f64,
+        at_once: bool,
+    ) {
         for moved in self.moved.iter_mut().flatten() {
             let target = match moved.has_offset {
-                true => modulated(base, moved.param, moved.offset),
-                false => played.get(moved.param),
+                true => self::moved(moved.param, value(moved.param), moved.offset),
+                false => played(moved.param),
             };
             if at_once {
                 moved.value = Ramp::at_rest(target);
@@ -125,15 +131,15 @@ mod tests {
         let mut note = NoteModulation::NONE;
         assert!(note.is_none());
         note.set(Param::Gain, 0.25, -24.0);
-        note.aim(&patch.values, &patch.values, 48_000.0, false);
+        note.aim(|param| patch.get(param), |param| patch.get(param), 48_000.0, false);
         assert_eq!((note.after(Param::Gain, 480), note.after(Param::Pan, 480)), (Some(-15.0), None));
         note.advance(960);
         assert_eq!(note.after(Param::Gain, 0), Some(-6.0));
         patch.set(Param::Gain, -42.0);
-        note.aim(&patch.values, &patch.values, 48_000.0, true);
+        note.aim(|param| patch.get(param), |param| patch.get(param), 48_000.0, true);
         assert_eq!(note.after(Param::Gain, 0), Some(-24.0));
         note.let_go();
-        note.aim(&patch.values, &Values::default(), 48_000.0, true);
+        note.aim(|param| patch.get(param), |param| param.info().default, 48_000.0, true);
         assert_eq!(note.after(Param::Gain, 0), Some(Param::Gain.info().default));
     }
 

@@ -22,8 +22,6 @@ pub(super) fn of_lfo(first: Param, index: usize) -> Param {
 /// Values that voices use: those of the modulators' own parameters and of the routes' destinations. Plain data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
-    /// Number of these settings: each new version has the next one.
-    pub(super) serial: u32,
     /// Rates in Hz.
     pub(super) rates: [f64; LFOS],
     /// Whether the rate follows the tempo. Such a rate cannot be modulated.
@@ -38,7 +36,6 @@ pub(crate) struct Settings {
 impl Settings {
     /// Settings without any modulation.
     pub(crate) const STILL: Self = Self {
-        serial: 0,
         rates: [0.0; LFOS],
         are_synchronised: [false; LFOS],
         shapes: [Shape::Sine; LFOS],
@@ -47,13 +44,12 @@ impl Settings {
         bases: [0.0; MAX_ROUTES],
     };
 
-    /// The next version of these settings, with parameters from `value`, at a tempo in beats per second.
-    pub(crate) fn next(&self, bus: &Bus, value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
+    /// Settings with parameters from `value`, at a tempo in beats per second.
+    pub(crate) fn new(bus: &Bus, value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
         let mut bases = [0.0; MAX_ROUTES];
         bus.destinations().iter().zip(&mut bases).for_each(|(destination, base)| *base = value(destination.param));
         let sync = |index| NoteValue::from_value(value(of_lfo(Param::Lfo1Sync, index)));
         Self {
-            serial: self.serial.wrapping_add(1),
             bases,
             rates: std::array::from_fn(|index| {
                 let rate = f64::from(value(of_lfo(Param::Lfo1Rate, index)));
@@ -64,11 +60,6 @@ impl Settings {
             macros: std::array::from_fn(|index| value(PARAMS[Param::Macro1 as usize + index].param) * 0.01),
             amounts: std::array::from_fn(|place| value(amount_param(place)) * 0.01),
         }
-    }
-
-    /// Settings for one note only. The instrument will not use their serial number next, so the two differ.
-    pub(crate) fn own(&self, bus: &Bus, value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
-        Self { serial: self.serial.wrapping_sub(1), ..self.next(bus, value, beat_rate) }
     }
 }
 

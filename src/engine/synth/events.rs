@@ -120,7 +120,7 @@ impl Synth {
         }
         for (note, voice) in self.manager.active().filter(|(note, _)| note.id == Some(id)) {
             if let Some(instrument) = self.instruments.of_note(note) {
-                voice.modulate(instrument, param, offset, instrument.smoother.value_after(param, 0));
+                voice.modulate(instrument, param, offset, instrument.knobs.after(param, 0));
             }
         }
     }

@@ -83,7 +83,7 @@ impl Instruments {
     pub(super) fn set_kit(&mut self, kit: &Arc<Kit>, clock: u64) {
         let (sounds, before) = (kit.sounds(), self.instruments.len());
         let keeps_last_pitch = kit.is_single() && self.kit.is_single();
-        let rates = [self.sample_rate, self.instruments[0].smoother.beat_rate()];
+        let rates = [self.sample_rate, self.instruments[0].beat_rate];
         self.instruments.truncate(sounds.len());
         for (instrument, sound) in self.instruments.iter_mut().zip(sounds) {
             instrument.play(sound, &self.offsets);
@@ -165,8 +165,8 @@ impl Instruments {
         let choke = self.modulated(Param::Choke);
         let (pad, pitch, detune) = self.kit.tuned_pad(note.key, &self.tuning)?;
         let instrument = self.instruments.get_mut(pad.sound)?;
-        instrument.controls = instrument.smoother.after(0);
-        instrument.move_shared(clock, 0);
+        instrument.look_ahead(clock, 0);
+        instrument.controls = instrument.next_controls;
         note.pitch = pitch;
         note.detune += detune;
         (note.patch, note.body) = (instrument.patch_serial, instrument.body_serial);
@@ -186,7 +186,7 @@ impl Instruments {
         self.values = *values;
         for instrument in &mut self.instruments {
             // Shared oscillators must first advance to this frame with the old rate.
-            instrument.move_shared(clock, 0);
+            instrument.look_ahead(clock, 0);
             instrument.begin_at(value_of_sound(&self.kit, values), &self.offsets);
         }
         self.number();
@@ -215,10 +215,7 @@ impl Instruments {
 
     /// Changes the tempo at frame `clock`, in beats per second.
     pub(super) fn set_tempo(&mut self, beat_rate: f64, clock: u64) {
-        for instrument in &mut self.instruments {
-            instrument.move_shared(clock, 0);
-            instrument.smoother.set_tempo(beat_rate);
-        }
+        self.instruments.iter_mut().for_each(|instrument| instrument.set_tempo(beat_rate, clock));
     }
 
     /// Computes at frame `clock` the values that voices use until the next control tick, `to_tick` frames later.
@@ -230,7 +227,7 @@ impl Instruments {
 
     /// Advances parameter smoothing by `frames` frames.
     pub(super) fn advance(&mut self, frames: u32) {
-        self.instruments.iter_mut().for_each(|instrument| instrument.smoother.advance(frames));
+        self.instruments.iter_mut().for_each(|instrument| instrument.knobs.advance(frames));
     }
 
     /// The most that a note of any sound of the kit takes from the pool.

@@ -6,7 +6,7 @@ mod events;
 mod instruments;
 mod process;
 
-use super::controls::Smoother;
+use super::controls::Controls;
 use super::note::{Note, nearest_channel, nearest_key};
 use super::space::{Space, needs_bodies};
 use super::voice::SynthVoice;
@@ -276,7 +276,7 @@ impl Synth {
 /// A pool of voices. Allocates.
 pub(super) fn voices(sample_rate: f64, capacity: Footprint) -> VoicePool<SynthVoice> {
     let sample_rate = allowed(sample_rate);
-    let controls = Smoother::new(sample_rate, &Values::default(), DEFAULT_BEAT_RATE).after(0);
+    let controls = Controls::new(|param| param.info().default, DEFAULT_BEAT_RATE);
     VoicePool::full(capacity, || SynthVoice::new(sample_rate, controls), || Cell::new(sample_rate))
 }
 

@@ -77,7 +77,7 @@ impl Decay {
 
     /// Reads from the patch whether the note rings on after its release.
     pub(super) fn strike(&mut self, values: &StruckValues) {
-        self.rings_on = values.instrument.modulated.choice::<NoteOff>(Param::NoteOff) == NoteOff::Ring;
+        self.rings_on = values.instrument.knobs.choice::<NoteOff>(Param::NoteOff) == NoteOff::Ring;
     }
 
     /// Handles the release of the key.

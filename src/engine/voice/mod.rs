@@ -22,7 +22,7 @@ use super::controls::Controls;
 use super::event::Expression;
 use super::expression::Expressions;
 use super::instrument::Instrument;
-use super::modulation::{Modulators, NoteModulation};
+use super::modulation::{Modulators, NoteModulation, Settings};
 use super::voice_manager::{Footprint, Unison, Voice};
 use crate::dsp::cells::Cells;
 use crate::dsp::fader::Fader;
@@ -60,8 +60,8 @@ pub(crate) struct SynthVoice {
     fader: Fader,
     /// The smoothed and modulated parameters, at the next control tick.
     controls: Controls,
-    /// The instrument's `controls_serial` when `controls` was copied; none if the note has offsets of its own.
-    controls_serial: Option<u32>,
+    /// The instrument's serial number when `controls` was copied; none if the note has offsets of its own.
+    serial: Option<u32>,
     key: u8,
     /// The index of the note's table of modes; see [`ModeTable::place`].
     table: usize,
@@ -103,7 +103,7 @@ impl SynthVoice {
             bloom: Bloom::NONE,
             fader: Fader::closed(),
             controls,
-            controls_serial: None,
+            serial: None,
             key: 0,
             table: 0,
             brightness: 0.0,
@@ -126,13 +126,16 @@ impl SynthVoice {
         self.clock.control();
         self.pitch.advance(self.controls.vibrato_rate, passed);
         let base = instrument.filter(|_| self.modulation.is_none()).map(|instrument| &instrument.next_controls);
-        if let Some(Instrument { smoother, controls_serial, .. }) = instrument {
-            let serial = base.map(|_| *controls_serial);
-            if serial.is_none() || serial != self.controls_serial {
-                let own = || smoother.modulated(&self.modulation, frames as u32);
-                (self.controls, self.controls_serial) = (base.copied().unwrap_or_else(own), serial);
-                self.modulators.unsettle();
-            }
+        let modulation = &self.modulation;
+        let own_value = |instrument: &Instrument, param| {
+            modulation.after(param, frames as u32).unwrap_or_else(|| instrument.knobs.after(param, frames as u32))
+        };
+        // A note with offsets of its own takes new values at every tick; others, when the instrument has new ones.
+        let serial = base.and(instrument).map(|instrument| instrument.serial);
+        let changed = instrument.filter(|_| serial.is_none() || serial != self.serial);
+        if let Some(instrument) = changed {
+            let own = || Controls::new(|param| own_value(instrument, param), instrument.beat_rate);
+            (self.controls, self.serial) = (base.copied().unwrap_or_else(own), serial);
         }
         if !self.modulators.are_idle() {
             self.modulators.advance(passed);
@@ -140,11 +143,11 @@ impl SynthVoice {
                 self.modulators.release(velocity);
             }
             if let Some(instrument) = instrument {
-                let smoother = &instrument.smoother;
-                let (settings, bus) = (&instrument.settings, self.modulators.bus());
-                let own = (!self.modulation.is_none())
-                    .then(|| smoother.own_settings(&self.modulation, frames as u32, settings, bus));
-                self.modulators.follow(own.as_ref().unwrap_or(settings), own.is_some(), &instrument.shared);
+                let own = changed.filter(|_| base.is_none()).map(|instrument| {
+                    Settings::new(self.modulators.bus(), |param| own_value(instrument, param), instrument.beat_rate)
+                });
+                let settings = changed.map(|instrument| own.as_ref().unwrap_or(&instrument.settings));
+                self.modulators.follow(settings, &instrument.shared);
             }
             // A new note starts with its routes applied for this frame. The ramp to the next tick, below, begins at these values.
             self.move_controls(base, wheels, if self.fresh { 0 } else { frames });
@@ -324,7 +327,8 @@ impl SynthVoice {
 
     /// Computes the targets of the note's own offsets again, from the instrument's present values.
     pub(crate) fn follow(&mut self, instrument: &Instrument) {
-        self.modulation.aim(&instrument.values, &instrument.modulated, self.sample_rate, self.fresh);
+        let knobs = &instrument.knobs;
+        self.modulation.aim(|param| knobs.value(param), |param| knobs.modulated(param), self.sample_rate, self.fresh);
     }
 
     /// Sets the brightness to the sum of the note's and its channel's. It also changes the note's strike if that has

@@ -80,7 +80,7 @@ impl Voice for SynthVoice {
     type Cell = Cell;
 
     fn footprint(instrument: &Instrument) -> Footprint {
-        super::footprint(&instrument.sound.patch().modes, instrument.modulated.get(Param::Unison))
+        super::footprint(&instrument.sound.patch().modes, instrument.knobs.modulated(Param::Unison))
     }
 
     fn add_cell(&mut self, cell: Box<Cell>) {
@@ -99,7 +99,7 @@ impl Voice for SynthVoice {
         self.clock = Clock::new(self.sample_rate);
         (self.energy, self.tension, self.bloom) = (Energy::NONE, Tension::NONE, Bloom::NONE);
         self.fader = Fader::closed();
-        (self.controls, self.controls_serial) = (instrument.controls, None);
+        (self.controls, self.serial) = (instrument.controls, None);
         (self.key, self.brightness) = (note.key, note.brightness.into());
         self.expressions = Expressions::new(self.sample_rate);
         self.expressions.begin(note.gain, note.pan);
@@ -122,7 +122,7 @@ impl Voice for SynthVoice {
         Pitch::set_ratios(&values, &mut self.bank);
         self.decay.read(&values, &self.controls, &mut self.bank);
 
-        let law = match instrument.modulated.choice::<Coefficients>(Param::Coefficients) {
+        let law = match instrument.knobs.choice::<Coefficients>(Param::Coefficients) {
             Coefficients::Exact => Law::Exact,
             Coefficients::Classic => Law::Classic,
         };

@@ -214,7 +214,7 @@ impl Strike {
         let [mallet, pluck, burst] = [Param::MalletVelocity, Param::PluckVelocity, Param::NoiseVelocity].map(force);
         let levels = [Param::MalletLevel, Param::PluckLevel].map(|param| exciter_gain(values.get(param)));
         self.forces = [mallet * levels[0], pluck * levels[1], burst];
-        let level = |param| exciter_gain(values.instrument.modulated.get(param).into()) / sqrt(count as f64);
+        let level = |param| exciter_gain(values.instrument.knobs.modulated(param).into()) / sqrt(count as f64);
         self.full_forces = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel].map(level);
         self.bowing.strike(values, force(Param::BowVelocity));
         // The energy of earlier strikes has been counted already.
@@ -279,7 +279,7 @@ fn tilted_levels(values: &StruckValues) -> [[f64; MAX_MODES]; MAX_CELLS] {
 
 /// The greatest amplitude of a nudge of mode `m`, for one of `count` unison voices; 0 if there is no such mode.
 pub(super) fn most_nudged(values: &StruckValues, m: usize, count: usize) -> f64 {
-    let level = |param| exciter_gain(values.instrument.modulated.get(param).into());
+    let level = |param| exciter_gain(values.instrument.knobs.modulated(param).into());
     let levels = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel].map(level);
     let loudest = levels.into_iter().fold(0.0, f64::max);
     let force = if loudest > 0.0 { loudest } else { 1.0 } / sqrt(count as f64);
@@ -292,7 +292,7 @@ fn mallet_frames(values: &StruckValues, note: &Note, hardness: f64, speed: f64, 
     if let Some(contact) = note.contact {
         return frames(contact.seconds.into(), sample_rate);
     }
-    if values.instrument.modulated.choice::<MalletPulse>(Param::MalletPulse) == MalletPulse::Impulse {
+    if values.instrument.knobs.choice::<MalletPulse>(Param::MalletPulse) == MalletPulse::Impulse {
         return 1;
     }
     let stretch = hertz(values.get(Param::MalletMass), speed, values.share(Param::MalletSpeed));

@@ -11,8 +11,8 @@ use crate::patch::{Mode, ModeTable};
 pub(super) fn strike_modulators(instrument: &Instrument, modulators: &mut Modulators, note: &Note, first: bool) {
     let (pitch, seed, serial) = (instrument.pitch(note), instrument.seed, note.serial);
     let struck = Struck { velocity: note.velocity, pitch, seed, serial };
-    let Instrument { positions, settings, shared, modulated, .. } = instrument;
-    modulators.strike(&struck, positions, settings, shared, |param| modulated.get(param), first);
+    let Instrument { positions, settings, shared, knobs, .. } = instrument;
+    modulators.strike(&struck, positions, settings, shared, |param| knobs.modulated(param), first);
 }
 
 /// The ratios of the modes of a cell; 0 for those that are missing.
@@ -39,7 +39,7 @@ impl<'a> StruckValues<'a> {
 
     /// The value in the parameter's unit.
     pub(super) fn get(&self, param: Param) -> f64 {
-        self.modulators.struck_value(param, |param| self.instrument.modulated.get(param)).into()
+        self.modulators.struck_value(param, |param| self.instrument.knobs.modulated(param)).into()
     }
 
     /// As [`StruckValues::get`], with the smoothed `value` in place of the instrument's value.
