@@ -19,7 +19,40 @@
 //! `lab`) |
 //! | `realtime` | sound devices and MIDI ports (feature `live`), and a terminal to play from (feature `realtime`) |
 //!
-//! A note, rendered:
+//! # Notes and songs
+//!
+//! A preset’s chord as samples, and a song through all of General MIDI as a WAV file (feature `render`):
+//!
+//! ```
+//! # #[cfg(feature = "render")]
+//! # fn main() -> sprung::Result<()> {
+//! use sprung::io::Song;
+//! use sprung::preset::{Preset, Programs};
+//! use sprung::render::{Job, Options};
+//!
+//! let marimba = Preset::find("marimba")?.kit();
+//! let [left, right] = Job::new(&Song::chord(&[60.0, 64.0, 67.0], 0.8, 1.0), &marimba, Options::default()).samples()?;
+//! assert!(left.len() > 48_000 && left.iter().any(|sample| sample.abs() > 0.01));
+//!
+//! # let folder = tempfile::tempdir().unwrap();
+//! # let path = folder.path().join("song.wav");
+//! let song = Song::parse(include_bytes!("../assets/midi/groove.mid"), "groove.mid")?;
+//! let instruments = Programs::factory_kits();
+//! let job = Job { programs: &instruments, ..Job::new(&song, &marimba, Options::default()) };
+//! # let song = Song::chord(&[60.0], 0.8, 1.5);
+//! # let job = Job { song: &song, ..job };
+//! let report = job.write(path)?;
+//! assert!(report.seconds > 1.0);
+//! # Ok(())
+//! # }
+//! # #[cfg(not(feature = "render"))]
+//! # fn main() {}
+//! ```
+//!
+//! # Live
+//!
+//! What an audio callback does: it hands on the events of a block, and gets its samples. Nothing in [`engine::Synth::process`]
+//! allocates, locks or waits. A game strikes with what its physics engine says of a contact: see [`sound::Sound::strike`].
 //!
 //! ```
 //! use sprung::engine::{Event, Synth};
@@ -27,13 +60,12 @@
 //! use sprung::preset::Preset;
 //!
 //! # fn main() -> sprung::Result<()> {
-//! let kick = Preset::find("kick")?;
+//! let kick = Preset::find("kick")?.patch.clone().with(Param::Gain, -9.0);
 //! let mut synth = Synth::new(48_000.0, 0);
-//! synth.set_patch(&kick.patch.clone().with(Param::Gain, -9.0));
+//! synth.set_patch(&kick);
 //!
 //! let (mut left, mut right) = ([0.0; 480], [0.0; 480]);
 //! synth.process(&[Event::note_on(100, 36, 0.8)], &mut left, &mut right);
-//!
 //! assert!(left[..100].iter().all(|sample| *sample == 0.0), "events fall on their frame");
 //! assert!(left[100..].iter().any(|sample| sample.abs() > 0.01));
 //! # Ok(())

@@ -36,6 +36,13 @@ pub struct Options {
     pub tail: Tail,
 }
 
+impl Default for Options {
+    /// As the command has them: 48 kHz, the seed 0, until nothing sounds.
+    fn default() -> Self {
+        Self { sample_rate: 48_000, seed: 0, block: 1024, tail: Tail::Auto }
+    }
+}
+
 /// A rendering job: a song, the kits that play it, and options.
 #[derive(Clone, Copy, Debug)]
 pub struct Job<'a> {

@@ -25,6 +25,20 @@ impl Job<'_> {
         self.render_labelled(None, sink)
     }
 
+    /// The whole rendering, left and right.
+    ///
+    /// # Errors
+    /// [`Error::Value`](crate::Error::Value) if an option is out of range.
+    pub fn samples(&self) -> Result<[Vec<f32>; 2]> {
+        let mut sound = [vec![], vec![]];
+        self.render(|left, right| {
+            sound[0].extend_from_slice(left);
+            sound[1].extend_from_slice(right);
+            Ok(())
+        })?;
+        Ok(sound)
+    }
+
     /// Like [`Job::render`], and also reads labels.
     pub(super) fn render_labelled(
         &self,

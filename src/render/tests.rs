@@ -52,13 +52,8 @@ fn keys_and_pedals_that_are_down_when_a_song_ends_do_not_sound_on() {
     let release = |kinds: &[EventKind], tail| {
         let event = |kind: &EventKind| SongEvent { seconds: 0.0, channel: 3, kind: *kind };
         let song = Song { events: kinds.iter().map(event).collect(), seconds: 0.1 };
-        let mut samples = Vec::new();
-        let sink = |left: &[f32], _: &[f32]| {
-            samples.extend_from_slice(left);
-            Ok(())
-        };
-        Job::new(&song, &Kit::of_patch(&patch), options(48_000, 512, tail)).render(sink).unwrap();
-        samples
+        let [left, _] = Job::new(&song, &Kit::of_patch(&patch), options(48_000, 512, tail)).samples().unwrap();
+        left
     };
     for kinds in [&[on][..], &[control(64), on, off], &[on, control(66), off], &[control(67), control(64), on]] {
         let auto = release(kinds, Tail::Auto);

@@ -4,8 +4,9 @@ use super::job::Job;
 use super::labels::{Labels, NoteLabel};
 use super::meter::{Levels, Meter};
 use crate::error::{Error, Result};
-use crate::io::{Output, SampleFormat, WavFormat, WavWriter};
+use crate::io::{Inputs, Output, SampleFormat, Target, WavFormat, WavWriter};
 use crate::units::{db_from_gain, gain_from_db, mono_from_stereo};
+use std::path::Path;
 use std::time::Instant;
 
 /// The level of a WAV file.
@@ -30,6 +31,13 @@ pub struct Delivery {
     pub mono: bool,
     /// The level.
     pub level: Level,
+}
+
+impl Default for Delivery {
+    /// As the command writes: 24 bits, stereo, as loud as rendered.
+    fn default() -> Self {
+        Self { samples: SampleFormat::Int24, dither: false, mono: false, level: Level::Gain(0.0) }
+    }
 }
 
 /// Progress of the work.
@@ -74,6 +82,19 @@ pub struct Report {
     pub limiter_seconds: f64,
     /// Seconds of sound per second of computing time.
     pub realtime_factor: f64,
+}
+
+impl Job<'_> {
+    /// Renders into a WAV file of 24 bits, which appears when it is complete, and replaces what was there.
+    ///
+    /// # Errors
+    /// [`Error::Value`] if an option is out of range, [`Error::Io`] if the file cannot be written.
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<Report> {
+        let mut output = Output::create(&Target::Path(path.as_ref().to_owned()), true, &Inputs::default())?;
+        let report = to_wav(self, &Delivery::default(), &mut output, |_| Ok(()))?;
+        output.commit()?;
+        Ok(report)
+    }
 }
 
 /// Renders a job into `output`. A first pass that only measures is needed if the level depends on the sound, or if the

@@ -37,19 +37,12 @@ fn divisions() -> Vec<Division> {
 /// The samples that `sprung render` makes from a MIDI file.
 pub(crate) fn rendered_by_the_command(midi: &[u8], kit: &Arc<Kit>) -> Vec<Vec<f32>> {
     let song = phrase::song(midi);
-    let options = Options { sample_rate: SAMPLE_RATE, seed: 0, block: 1024, tail: Tail::None };
+    let options = Options { sample_rate: SAMPLE_RATE, tail: Tail::None, ..Options::default() };
     rendered(&Job::new(&song, kit, options))
 }
 
 fn rendered(job: &Job) -> Vec<Vec<f32>> {
-    let mut channels = vec![Vec::new(), Vec::new()];
-    job.render(|left, right| {
-        channels[0].extend(left);
-        channels[1].extend(right);
-        Ok(())
-    })
-    .unwrap();
-    channels
+    job.samples().unwrap().into()
 }
 
 fn player(patch: &Patch) -> Player {
@@ -119,7 +112,7 @@ pub(crate) fn sound_that_comes_in_has_the_bits_of_the_command() {
     for (name, patch) in patches() {
         let silent = rendered_by_the_command(&midi, &Kit::of_patch(&patch));
         let patch = patch.with(Param::InputLevel, -6.0);
-        let options = Options { sample_rate: SAMPLE_RATE, seed: 0, block: 1024, tail: Tail::None };
+        let options = Options { sample_rate: SAMPLE_RATE, tail: Tail::None, ..Options::default() };
         let kit = Kit::of_patch(&patch);
         let expected = rendered(&Job { input: &input, ..Job::new(&song, &kit, options) });
         assert!(expected != silent, "{name}: what comes in is heard");

@@ -33,16 +33,10 @@ fn render(tuning: &Tuning, patch: &Patch, keys: &[u8], seconds: f64) -> Vec<f32>
     let on = |key: &u8| EventKind::NoteOn { key: *key, detune: 0.0, velocity: 1.0, id: None };
     let events = keys.iter().map(|key| SongEvent { seconds: 0.0, channel: 0, kind: on(key) }).collect();
     let song = Song { events, seconds };
-    let options = Options { sample_rate: SAMPLE_RATE, seed: 0, block: 4096, tail: Tail::None };
-    let mut samples = Vec::new();
+    let options = Options { sample_rate: SAMPLE_RATE, tail: Tail::None, ..Options::default() };
     let kit = Kit::of_patch(patch);
-    let job = Job { tuning, ..Job::new(&song, &kit, options) };
-    job.render(|left, _| {
-        samples.extend(left);
-        Ok(())
-    })
-    .unwrap();
-    samples
+    let [left, _] = Job { tuning, ..Job::new(&song, &kit, options) }.samples().unwrap();
+    left
 }
 
 /// The frequency in Hz at which a key sounds.

@@ -125,13 +125,8 @@ fn same_samples(page: &mut Page, preset: &str) -> Result<(), String> {
 fn rendered(preset: &str) -> sprung::Result<String> {
     let song = Song::chord(&[60.0], 100.0 / 127.0, f64::from(SECONDS));
     let kit = Preset::find(preset)?.kit();
-    let options = Options { sample_rate: RATE, seed: 0, block: 1024, tail: Tail::Seconds(f64::from(SECONDS)) };
-    let (mut left, mut right) = (Vec::new(), Vec::new());
-    Job::new(&song, &kit, options).render(|block_left, block_right| {
-        left.extend(block_left);
-        right.extend(block_right);
-        Ok(())
-    })?;
+    let options = Options { sample_rate: RATE, tail: Tail::Seconds(f64::from(SECONDS)), ..Options::default() };
+    let [left, right] = Job::new(&song, &kit, options).samples()?;
     Ok(Digest::of(&left, &right, f64::from(RATE)).sha256)
 }
 
