@@ -72,6 +72,12 @@
 //! # }
 //! ```
 
+// Some of the crate’s own functions serve certain features only. Where all features are on, dead code is found.
+#![cfg_attr(
+    not(all(feature = "analysis", feature = "batch", feature = "lab", feature = "live", feature = "realtime")),
+    allow(dead_code, unused_imports)
+)]
+
 #[cfg(feature = "fit")]
 pub mod analysis;
 #[cfg(feature = "batch")]

@@ -3,7 +3,7 @@
 use libm::{exp2, log2, log10, pow};
 
 /// MIDI key of A4, the note whose frequency sets the tuning.
-pub const A4_KEY: f64 = 69.0;
+pub(crate) const A4_KEY: f64 = 69.0;
 
 /// Amplitude ratio of a level in decibels. 0 dB is exactly 1.
 pub fn gain_from_db(db: f64) -> f64 {
@@ -43,7 +43,7 @@ pub fn note_name(key: u8) -> String {
 }
 
 /// MIDI key of a note name (`C#4`, `Db4`, `a0`, `C-1`); `None` if it is not a note name or outside 0–127.
-pub fn key_from_note_name(name: &str) -> Option<u8> {
+pub(crate) fn key_from_note_name(name: &str) -> Option<u8> {
     semitones_from_note_name(name).and_then(|key| u8::try_from(key).ok()).filter(|key| *key < 128)
 }
 
@@ -97,7 +97,7 @@ pub fn parse_key(text: &str, a4_hz: f64) -> Result<f64, String> {
 }
 
 /// If `text` is a quantity with a decimal comma, the same with a decimal point: `"0,5 s"` gives `"0.5 s"`.
-pub fn with_decimal_point(text: &str) -> Option<String> {
+pub(crate) fn with_decimal_point(text: &str) -> Option<String> {
     let (whole, rest) = text.split_once(',')?;
     let between_digits =
         whole.ends_with(|c: char| c.is_ascii_digit()) && rest.starts_with(|c: char| c.is_ascii_digit());
@@ -107,7 +107,7 @@ pub fn with_decimal_point(text: &str) -> Option<String> {
 }
 
 /// Splits `"-12 dB"` into `(-12.0, "dB")`; `None` if the text does not begin with a finite number.
-pub fn split_quantity(text: &str) -> Option<(f64, &str)> {
+pub(crate) fn split_quantity(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     let end = text
         .char_indices()

@@ -32,7 +32,7 @@ pub fn mono<C: AsRef<[f32]>>(channels: &[C]) -> Vec<f32> {
 const CANCELLED: f64 = 0.1;
 
 /// The loudest of some channels whose mean all but cancels; none if it does not.
-pub fn cancelling(channels: &[Vec<f32>]) -> Option<usize> {
+pub(crate) fn cancelling(channels: &[Vec<f32>]) -> Option<usize> {
     if channels.len() < 2 {
         return None;
     }

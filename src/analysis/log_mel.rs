@@ -9,13 +9,13 @@ use std::sync::{Arc, LazyLock};
 /// Sample rate in Hz of the sounds that are measured.
 pub const RATE: u32 = 44_100;
 /// Number of bands.
-pub const BANDS: usize = 48;
+pub(crate) const BANDS: usize = 48;
 /// Samples per window.
 pub const WINDOW: usize = 2048;
 /// Samples from one window to the next.
-pub const HOP: usize = 256;
+pub(crate) const HOP: usize = 256;
 /// Range in dB below the loudest band in which differences count.
-pub const SPAN_DB: f64 = 60.0;
+pub(crate) const SPAN_DB: f64 = 60.0;
 /// Highest frequency in Hz.
 const HIGHEST: f64 = 20_000.0;
 /// A sound begins at its first sample above this share of its peak.
@@ -23,13 +23,13 @@ const AUDIBLE: f32 = 0.01;
 
 /// Levels in dB of each band, a list per window; the first window is centred on the first sample.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LogMel {
+pub(crate) struct LogMel {
     /// The windows.
     pub columns: Vec<[f64; BANDS]>,
 }
 
 /// A planned measurement. Not real-time safe.
-pub struct MelBands {
+pub(crate) struct MelBands {
     fft: Arc<dyn RealToComplex<f64>>,
     window: Vec<f64>,
     input: Vec<f64>,
@@ -76,7 +76,7 @@ impl Default for MelBands {
 
 impl MelBands {
     /// Plans the measurement: Hann windows, triangular bands.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let fft = RealFftPlanner::new().plan_fft_forward(WINDOW);
         let bin_width = f64::from(RATE) / WINDOW as f64;
         let all: Vec<[f64; BANDS]> = (0..=WINDOW / 2).map(|bin| weights(bin as f64 * bin_width)).collect();
@@ -97,7 +97,7 @@ impl MelBands {
     }
 
     /// Measures samples at [`RATE`]. A sine of full scale in the middle of a band shows about 0 dB.
-    pub fn measure(&mut self, samples: &[f32]) -> LogMel {
+    pub(crate) fn measure(&mut self, samples: &[f32]) -> LogMel {
         let scale = 2.0 / self.window.iter().sum::<f64>();
         let mut columns = Vec::with_capacity(samples.len() / HOP + 1);
         for middle in (0..samples.len().max(1)).step_by(HOP) {
@@ -130,14 +130,14 @@ impl LogMel {
     }
 
     /// The loudest band of all windows, in dB.
-    pub fn loudest(&self) -> f64 {
+    pub(crate) fn loudest(&self) -> f64 {
         self.columns.iter().flatten().copied().fold(SILENCE_DB, f64::max)
     }
 
     /// Mean difference from another sound in dB, over all bands and windows in which at least one sound is within
     /// [`SPAN_DB`] of the loudest band of both. Lower levels are raised to the lower end of that range. 0 if both are
     /// silent.
-    pub fn distance(&self, other: &LogMel) -> f64 {
+    pub(crate) fn distance(&self, other: &LogMel) -> f64 {
         let floor = self.loudest().max(other.loudest()) - SPAN_DB;
         let silence = [SILENCE_DB; BANDS];
         let (mut sum, mut count) = (0.0, 0);

@@ -50,7 +50,7 @@ impl Bank {
     }
 
     /// Replaces the bank by an empty one with another law. Does nothing if the bank has this law already.
-    pub fn set_law(&mut self, law: Law, sample_rate: f64) {
+    pub(crate) fn set_law(&mut self, law: Law, sample_rate: f64) {
         match (law, &*self) {
             (Law::Exact, Self::Exact(_)) | (Law::Classic, Self::Classic(_)) => {}
             _ => *self = Self::of(law, sample_rate),
@@ -78,7 +78,7 @@ impl Bank {
     }
 
     /// See [`ModeBank::set_bow_weight`]. Does nothing with the original formulas, which have no bow.
-    pub fn set_bow_weight(&mut self, m: usize, weight: f32) {
+    pub(crate) fn set_bow_weight(&mut self, m: usize, weight: f32) {
         if let Self::Exact(bank) = self {
             bank.set_bow_weight(m, weight);
         }
@@ -105,7 +105,7 @@ impl Bank {
     }
 
     /// See [`ModeBank::jump_to`].
-    pub fn jump_to(&mut self, ratio: f64) {
+    pub(crate) fn jump_to(&mut self, ratio: f64) {
         either!(self, bank => bank.jump_to(ratio));
     }
 

@@ -2,7 +2,7 @@
 
 mod cascade;
 
-pub use cascade::Climb;
+pub(crate) use cascade::Climb;
 
 use super::CONTROL_FRAMES;
 use super::bank::{Bank, Law};
@@ -52,10 +52,10 @@ pub struct Cells {
 
 impl Cells {
     /// No cells.
-    pub const EMPTY: Self = Self { cells: [const { None }; MAX_CELLS], len: 0, sum: [[0.0; CONTROL_FRAMES]; 2] };
+    pub(crate) const EMPTY: Self = Self { cells: [const { None }; MAX_CELLS], len: 0, sum: [[0.0; CONTROL_FRAMES]; 2] };
 
     /// Number of cells that this number of modes needs.
-    pub fn count_for(modes: usize) -> usize {
+    pub(crate) fn count_for(modes: usize) -> usize {
         modes.div_ceil(MAX_MODES).clamp(1, MAX_CELLS)
     }
 
@@ -96,7 +96,7 @@ impl Cells {
 
     /// Like [`super::ModeBank::with_state_of`]. Allocates.
     #[must_use]
-    pub fn with_state_of(&self, other: &Self) -> Self {
+    pub(crate) fn with_state_of(&self, other: &Self) -> Self {
         let mut copy = self.clone();
         copy.iter_mut().zip(other.iter()).for_each(|(cell, other)| cell.bank = cell.bank.with_state_of(&other.bank));
         copy
@@ -104,18 +104,18 @@ impl Cells {
 
     /// Frequency of each mode as a multiple of the note's frequency, a row for each cell. Write these before
     /// [`Cells::load`].
-    pub fn ratios_mut(&mut self) -> impl Iterator<Item = &mut [f64; MAX_MODES]> {
+    pub(crate) fn ratios_mut(&mut self) -> impl Iterator<Item = &mut [f64; MAX_MODES]> {
         self.iter_mut().map(|cell| &mut cell.ratios)
     }
 
     /// T60 of each mode as a multiple of the note's decay, a row for each cell. Write these before [`Cells::load`].
-    pub fn t60_scales_mut(&mut self) -> impl Iterator<Item = &mut [f64; MAX_MODES]> {
+    pub(crate) fn t60_scales_mut(&mut self) -> impl Iterator<Item = &mut [f64; MAX_MODES]> {
         self.iter_mut().map(|cell| &mut cell.t60_scales)
     }
 
     /// Square of each mode's shape at the point of touch, 0–1, a row for each cell. Only the functions that are passed to
     /// [`Cells::load`], [`Cells::retune`] and [`Cells::damp`] receive it.
-    pub fn touched_mut(&mut self) -> impl Iterator<Item = &mut [f32; MAX_MODES]> {
+    pub(crate) fn touched_mut(&mut self) -> impl Iterator<Item = &mut [f32; MAX_MODES]> {
         self.iter_mut().map(|cell| &mut cell.touched)
     }
 
@@ -182,13 +182,13 @@ impl Cells {
     }
 
     /// Like [`super::ModeBank::jump_to`].
-    pub fn jump_to(&mut self, ratio: f64) {
+    pub(crate) fn jump_to(&mut self, ratio: f64) {
         self.iter_mut().for_each(|cell| cell.bank.jump_to(ratio));
     }
 
     /// Sets the weights of the first [`MAX_MODES`] modes under a bow, scaled so that their squares add up to 1. Modes after
     /// these are not bowed. `weight` gives the weight of a mode by its number, before scaling.
-    pub fn set_bow_weights(&mut self, weight: impl Fn(usize) -> f64) {
+    pub(crate) fn set_bow_weights(&mut self, weight: impl Fn(usize) -> f64) {
         let Some(Cell { bank, .. }) = self.iter_mut().next() else { return };
         let mut weights = [0.0; MAX_MODES];
         let weights = &mut weights[..bank.len()];
@@ -241,12 +241,12 @@ impl Cells {
 
     /// Frames until the sum of the squared amplitudes of all modes falls below `total`, if their damping does not
     /// change. Takes some microseconds.
-    pub fn frames_until(&self, total: f64) -> u64 {
+    pub(crate) fn frames_until(&self, total: f64) -> u64 {
         self.energies().frames_until(total)
     }
 
     /// Upper bound of [`Cells::frames_until`] after `more` energy has been added, whichever modes get it.
-    pub fn frames_until_at_most(&self, total: f64, more: f64) -> u64 {
+    pub(crate) fn frames_until_at_most(&self, total: f64, more: f64) -> u64 {
         self.energies().frames_until_at_most(total, more)
     }
 

@@ -256,7 +256,7 @@ impl ClassicBank {
     }
 
     /// Like [`super::ModeBank::jump_to`].
-    pub fn jump_to(&mut self, ratio: f64) {
+    pub(crate) fn jump_to(&mut self, ratio: f64) {
         self.tune();
         (self.ratio, self.until_tick, self.line_frames) = (ratio, 0, 0);
         self.aim(None);
@@ -318,7 +318,7 @@ impl ClassicBank {
 
     /// Like [`super::ModeBank::with_state_of`].
     #[must_use]
-    pub fn with_state_of(&self, other: &Self) -> Self {
+    pub(crate) fn with_state_of(&self, other: &Self) -> Self {
         let mut copy = self.clone();
         let states = copy.modes.iter_mut().zip(&other.modes);
         states.for_each(|(mode, other)| (mode.mass.x, mode.mass.v) = (other.mass.x, other.mass.v));

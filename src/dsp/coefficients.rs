@@ -8,7 +8,7 @@ use libm::{asin, cos, exp, expm1, log, sin, sqrt};
 use std::f64::consts::{PI, TAU};
 
 /// Natural logarithm of −60 dB, as an amplitude ratio of 0.001.
-pub const LN_MINUS_60_DB: f64 = -6.907_755_278_982_137;
+pub(crate) const LN_MINUS_60_DB: f64 = -6.907_755_278_982_137;
 
 /// `ζ`, `ω²` and the starting state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,12 +24,12 @@ pub struct Coefficients {
 }
 
 /// Angle per sample of a frequency in Hz.
-pub fn angle_from_frequency(frequency: f64, sample_rate: f64) -> f64 {
+pub(crate) fn angle_from_frequency(frequency: f64, sample_rate: f64) -> f64 {
     TAU * frequency / sample_rate
 }
 
 /// `(1−r)² + 4 r sin²(θ/2)`: the `ω²` of a damped sinusoid. (`1 + r² − 2 r cos θ` would cancel at low pitch.)
-pub fn omega2_from_angle(radius: f64, theta: f64) -> f64 {
+pub(crate) fn omega2_from_angle(radius: f64, theta: f64) -> f64 {
     let half_chord = sin(0.5 * theta);
     let loss = 1.0 - radius;
     loss * loss + 4.0 * radius * half_chord * half_chord
@@ -48,7 +48,7 @@ impl Coefficients {
     }
 
     /// [`Coefficients::exact`] from the logarithm of the radius and the angle, both per sample.
-    pub fn from_polar(ln_radius: f64, theta: f64, amplitude: f64) -> Self {
+    pub(crate) fn from_polar(ln_radius: f64, theta: f64, amplitude: f64) -> Self {
         let radius = exp(ln_radius);
         Self {
             zeta: -expm1(2.0 * ln_radius),
@@ -81,7 +81,7 @@ impl Coefficients {
     ///
     /// `m > 0`, `c ≥ 0`, `k ≥ 0`, `dt > 0`, in consistent units. Source: the closed form of "Damped Harmonic
     /// Oscillator" (`τ₀`, `τ₁`). Real-time safe.
-    pub fn mass_spring(m: f64, c: f64, k: f64, x0: f64, velocity0: f64, dt: f64) -> Self {
+    pub(crate) fn mass_spring(m: f64, c: f64, k: f64, x0: f64, velocity0: f64, dt: f64) -> Self {
         let lambda = 0.5 * c / m * dt;
         let omega0_squared = k / m * dt * dt;
         let sigma_squared = lambda * lambda - omega0_squared;

@@ -29,7 +29,7 @@ pub use coefficients::Coefficients;
 pub use limiter::Limiter;
 pub use mode_bank::ModeBank;
 pub use oscillator::HarmonicOscillator;
-pub use power::power_of_two;
+pub(crate) use power::power_of_two;
 pub use simd::Level;
 
 /// Frames between two control ticks. Must not change: pitch and gain move linearly between ticks, so all samples depend on

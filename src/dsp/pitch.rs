@@ -4,7 +4,7 @@ use libm::exp;
 
 /// A pitch sweep that starts some semitones away and reaches 0 after some time, as a function of time. Real-time safe.
 #[derive(Clone, Copy, Debug)]
-pub struct SweepEnvelope {
+pub(crate) struct SweepEnvelope {
     semitones: f64,
     seconds: f64,
     steepness: f64,
@@ -15,13 +15,13 @@ pub struct SweepEnvelope {
 impl SweepEnvelope {
     /// A sweep from `semitones` to 0 in `seconds`. `curve` is −1 to 1: 0 is a straight line; above 0 the sweep starts
     /// fast and ends slowly, below 0 the reverse.
-    pub fn new(semitones: f64, seconds: f64, curve: f64) -> Self {
+    pub(crate) fn new(semitones: f64, seconds: f64, curve: f64) -> Self {
         let steepness = 8.0 * curve;
         Self { semitones, seconds, steepness, end: exp(-steepness) }
     }
 
     /// Semitones, `time` seconds after the start; exactly 0 from `seconds` on.
-    pub fn at(&self, time: f64) -> f64 {
+    pub(crate) fn at(&self, time: f64) -> f64 {
         if time >= self.seconds || self.semitones == 0.0 {
             return 0.0;
         }

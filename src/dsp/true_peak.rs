@@ -15,7 +15,7 @@ const WEIGHTS: usize = TAPS * POINTS;
 /// Stored twice in a row, so that it can be read starting at any age.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub struct ByAge([f32; 2 * WEIGHTS]);
+pub(crate) struct ByAge([f32; 2 * WEIGHTS]);
 
 impl ByAge {
     fn new(number: impl Fn(usize) -> f32) -> Self {
@@ -23,7 +23,7 @@ impl ByAge {
     }
 
     /// Applies `change` to every number.
-    pub fn map(self, change: impl Fn(f32) -> f32) -> Self {
+    pub(crate) fn map(self, change: impl Fn(f32) -> f32) -> Self {
         Self(self.0.map(change))
     }
 
@@ -38,7 +38,7 @@ impl ByAge {
 /// The interpolation of ITU-R BS.1770-5, annex 2, at four times the sample rate: a sinc function under a Hann window.
 /// Plain data; making one calls transcendental functions.
 #[derive(Clone, Debug)]
-pub struct Weights {
+pub(crate) struct Weights {
     /// Weight of the newest sample in each point to which it contributes.
     of_newest: ByAge,
     /// A mask: zero bits for points that the previous sample completed, since the newest points replace them, and one bits for
@@ -50,7 +50,7 @@ pub struct Weights {
 
 impl Weights {
     /// Computes the weights; the same bits on every machine.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let of_newest: [f32; WEIGHTS] = std::array::from_fn(|index| {
             let window = 0.5 * (1.0 - cos(2.0 * PI * index as f64 / WEIGHTS as f64));
             let x = PI * (index as f64 - WEIGHTS as f64 / 2.0) / POINTS as f64;
@@ -70,7 +70,7 @@ impl Weights {
     }
 
     /// Upper bound of each point's partial sum, if no point ever exceeds `peak` when complete.
-    pub fn partial_bounds(&self, peak: f32) -> ByAge {
+    pub(crate) fn partial_bounds(&self, peak: f32) -> ByAge {
         self.partial_bounds.map(|bound| bound * peak)
     }
 }
@@ -84,7 +84,7 @@ impl Default for Weights {
 /// The interpolated points of one channel. They depend on the last [`TAPS`] samples only, bit for bit. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub struct Interpolator {
+pub(crate) struct Interpolator {
     /// The partial sum of each point. A point stays in its place until it is complete; then a new one takes the place.
     sums: [f32; WEIGHTS],
     /// The place, in groups of [`POINTS`], of the points that the next sample will complete.
@@ -93,7 +93,7 @@ pub struct Interpolator {
 
 impl Interpolator {
     /// The state after silence.
-    pub const SILENT: Self = Self { sums: [0.0; WEIGHTS], next: 0 };
+    pub(crate) const SILENT: Self = Self { sums: [0.0; WEIGHTS], next: 0 };
 
     /// Each point's partial sum before the next sample, and the weight of that sample in the point.
     #[inline(always)]
@@ -108,7 +108,7 @@ impl Interpolator {
 
     /// The largest magnitude of the points that `sample` would complete. They lie half of [`TAPS`] samples in the past.
     #[inline(always)]
-    pub fn peak_with(&self, weights: &Weights, sample: f32) -> f32 {
+    pub(crate) fn peak_with(&self, weights: &Weights, sample: f32) -> f32 {
         let (sums, weights) = (self.sums.as_chunks::<POINTS>().0, weights.of_newest.0.as_chunks::<POINTS>().0);
         let mut peak = 0.0;
         for point in 0..POINTS {
@@ -120,7 +120,7 @@ impl Interpolator {
 
     /// Adds the next sample.
     #[inline(always)]
-    pub fn push(&mut self, weights: &Weights, sample: f32) {
+    pub(crate) fn push(&mut self, weights: &Weights, sample: f32) {
         let mut sums = [0.0; WEIGHTS];
         sums.iter_mut().zip(self.points(weights)).for_each(|(to, (sum, weight))| *to = sum + weight * sample);
         self.sums = sums;
@@ -129,7 +129,7 @@ impl Interpolator {
 
     /// Whether no partial sum would exceed its limit after the next sample.
     #[inline(always)]
-    pub fn is_within(&self, weights: &Weights, limits: &ByAge, sample: f32) -> bool {
+    pub(crate) fn is_within(&self, weights: &Weights, limits: &ByAge, sample: f32) -> bool {
         let points = self.points(weights).zip(limits.from(self.next));
         // Has no branch, so that the compiler can use vectors.
         points.fold(true, |within, ((sum, weight), limit)| within & ((sum + weight * sample).abs() <= *limit))
@@ -138,7 +138,7 @@ impl Interpolator {
     /// The largest factor for `sample`, 0–1, with which no partial sum exceeds its limit. A partial sum that already exceeds it
     /// does not grow.
     #[inline(always)]
-    pub fn share_within(&self, weights: &Weights, limits: &ByAge, sample: f32) -> f32 {
+    pub(crate) fn share_within(&self, weights: &Weights, limits: &ByAge, sample: f32) -> f32 {
         if self.is_within(weights, limits, sample) {
             return 1.0;
         }

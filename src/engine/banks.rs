@@ -8,20 +8,20 @@ use super::event::EventKind;
 use super::note::nearest_channel;
 
 /// Number of melodic programs. Drum kit `n` is program `MELODIC + n` in a list that holds both.
-pub const MELODIC: u8 = 128;
+pub(crate) const MELODIC: u8 = 128;
 
 /// The channel of drums, from 0.
-pub const DRUM_CHANNEL: u8 = 9;
+pub(crate) const DRUM_CHANNEL: u8 = 9;
 
 /// Controller number of the bank's more significant byte.
-pub const BANK_SELECT: u8 = 0;
+pub(crate) const BANK_SELECT: u8 = 0;
 
 /// Banks of drums: those of General MIDI 2 and of XG.
-pub const DRUM_BANK: u8 = 120;
+pub(crate) const DRUM_BANK: u8 = 120;
 const XG_DRUM_BANKS: [u8; 2] = [126, 127];
 
 /// The bank of General MIDI 2 that is melodic on channel 10 too.
-pub const MELODIC_BANK: u8 = 121;
+pub(crate) const MELODIC_BANK: u8 = 121;
 
 /// The bank that each channel has selected. Real-time safe.
 #[derive(Clone, Copy, Debug, Default)]

@@ -5,47 +5,47 @@ use super::EventKind;
 /// Numbers of the controllers that the engine responds to.
 pub mod controller {
     /// Modulation wheel.
-    pub const WHEEL: u8 = 1;
+    pub(crate) const WHEEL: u8 = 1;
     /// Breath.
-    pub const BREATH: u8 = 2;
+    pub(crate) const BREATH: u8 = 2;
     /// Data entry for the selected registered parameter, most significant seven bits.
-    pub const DATA: u8 = 6;
+    pub(crate) const DATA: u8 = 6;
     /// Channel volume.
-    pub const VOLUME: u8 = 7;
+    pub(crate) const VOLUME: u8 = 7;
     /// Pan.
-    pub const PAN: u8 = 10;
+    pub(crate) const PAN: u8 = 10;
     /// Expression.
-    pub const EXPRESSION: u8 = 11;
+    pub(crate) const EXPRESSION: u8 = 11;
     /// Data entry, least significant seven bits.
-    pub const DATA_FINE: u8 = 38;
+    pub(crate) const DATA_FINE: u8 = 38;
     /// Sustain pedal.
     pub const SUSTAIN: u8 = 64;
     /// Sostenuto pedal.
-    pub const SOSTENUTO: u8 = 66;
+    pub(crate) const SOSTENUTO: u8 = 66;
     /// Soft pedal.
     pub const SOFT: u8 = 67;
     /// Brightness.
-    pub const BRIGHTNESS: u8 = 74;
+    pub(crate) const BRIGHTNESS: u8 = 74;
     /// How much of a channel is sent to the space that a song's channels share.
     pub const REVERB_SEND: u8 = 91;
     /// Selects a non-registered parameter, least significant seven bits.
-    pub const NRPN_FINE: u8 = 98;
+    pub(crate) const NRPN_FINE: u8 = 98;
     /// Selects a non-registered parameter, most significant seven bits.
-    pub const NRPN: u8 = 99;
+    pub(crate) const NRPN: u8 = 99;
     /// Selects a registered parameter, least significant seven bits.
-    pub const RPN_FINE: u8 = 100;
+    pub(crate) const RPN_FINE: u8 = 100;
     /// Selects a registered parameter, most significant seven bits.
     pub const RPN: u8 = 101;
     /// All sound off.
-    pub const ALL_SOUND_OFF: u8 = 120;
+    pub(crate) const ALL_SOUND_OFF: u8 = 120;
     /// Reset all controllers.
-    pub const RESET: u8 = 121;
+    pub(crate) const RESET: u8 = 121;
     /// All notes off. The mode messages 124–127 do the same.
-    pub const ALL_NOTES_OFF: u8 = 123;
+    pub(crate) const ALL_NOTES_OFF: u8 = 123;
 }
 
 /// The value of [`controller::REVERB_SEND`] at the start and after a system reset (General MIDI 2, 1999).
-pub const DEFAULT_REVERB_SEND: f32 = 40.0 / 127.0;
+pub(crate) const DEFAULT_REVERB_SEND: f32 = 40.0 / 127.0;
 
 /// Parses one complete MIDI message, as a port delivers it. Returns its channel and event; none if it is not a channel
 /// message. Real-time safe.

@@ -47,7 +47,7 @@ pub use event::{Event, EventKind, Expression};
 #[cfg(feature = "fit")]
 pub(crate) use modulation::Lfo;
 pub use note::{Note, NoteId, Notes};
-pub use snapshot::{SHOWN_NOTES, Snapshot, SoundingNote};
+pub use snapshot::{Snapshot, SoundingNote};
 pub use synth::Synth;
 pub use telemetry::{Telemetry, TelemetryWriter};
-pub use voice_state::{ModeState, StrikeState, VoiceState};
+pub(crate) use voice_state::{ModeState, VoiceState};

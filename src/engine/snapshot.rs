@@ -7,7 +7,7 @@ use crate::params::Param;
 use crate::patch::routes::MAX_ROUTES;
 
 /// Maximum number of notes in a snapshot.
-pub const SHOWN_NOTES: usize = 16;
+pub(crate) const SHOWN_NOTES: usize = 16;
 
 /// A note that sounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

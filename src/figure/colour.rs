@@ -3,14 +3,14 @@
 use plotters::style::RGBColor;
 
 /// Text and axes.
-pub const INK: RGBColor = RGBColor(40, 40, 46);
+pub(crate) const INK: RGBColor = RGBColor(40, 40, 46);
 /// Grid lines.
 pub const GRID: RGBColor = RGBColor(226, 226, 230);
 
 /// Blue of `SERIES`: left channels, expected signals.
-pub const BLUE: RGBColor = SERIES[0];
+pub(crate) const BLUE: RGBColor = SERIES[0];
 /// Vermillion of `SERIES`: right channels, actual signals.
-pub const VERMILLION: RGBColor = SERIES[1];
+pub(crate) const VERMILLION: RGBColor = SERIES[1];
 
 /// Six colours of Okabe & Ito, "Color Universal Design" (2008), without black (the true motion) and yellow (too pale).
 const SERIES: [RGBColor; 6] = [

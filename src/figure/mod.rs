@@ -13,7 +13,7 @@ use std::sync::Once;
 /// A part of a figure.
 pub type Area<B> = DrawingArea<B, Shift>;
 /// A result of drawing on backend `B`.
-pub type Drawn<B> = std::result::Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
+pub(crate) type Drawn<B> = std::result::Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
 /// Something that can be drawn.
 pub trait Picture {

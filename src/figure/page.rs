@@ -29,7 +29,7 @@ pub fn escaped(text: &str) -> String {
 }
 
 /// A link that contains a file's bytes (RFC 2397, RFC 4648).
-pub fn data_link(kind: &str, bytes: &[u8]) -> String {
+pub(crate) fn data_link(kind: &str, bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut link = format!("data:{kind};base64,");
     link.reserve(bytes.len().div_ceil(3) * 4);

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// An axis: its range, quantity and scale.
 #[derive(Clone, Debug)]
-pub struct Axis<'a> {
+pub(crate) struct Axis<'a> {
     /// Smallest and largest value; for a logarithmic axis, their decimal logarithms.
     pub range: Range<f64>,
     /// Its quantity, with the unit. If empty, the axis has no labels.
@@ -21,12 +21,12 @@ pub struct Axis<'a> {
 
 impl<'a> Axis<'a> {
     /// An axis with even steps.
-    pub fn linear(range: Range<f64>, label: &'a str) -> Self {
+    pub(crate) fn linear(range: Range<f64>, label: &'a str) -> Self {
         Self { range, label, logarithmic: false }
     }
 
     /// A logarithmic axis; `range` contains decimal logarithms.
-    pub fn logarithmic(range: Range<f64>, label: &'a str) -> Self {
+    pub(crate) fn logarithmic(range: Range<f64>, label: &'a str) -> Self {
         Self { range, label, logarithmic: true }
     }
 
@@ -57,7 +57,7 @@ impl<'a> Axis<'a> {
 }
 
 /// A chart to be drawn.
-pub struct Panel<'a> {
+pub(crate) struct Panel<'a> {
     /// Horizontal axis.
     pub x: Axis<'a>,
     /// Vertical axis.
@@ -91,11 +91,11 @@ impl Ranged for Ticked {
 }
 
 /// A drawn panel, to which lines can be added.
-pub type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<Ticked, Ticked>>;
+pub(crate) type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<Ticked, Ticked>>;
 
 impl Panel<'_> {
     /// Draws axes, grid and labels.
-    pub fn draw<'a, B: DrawingBackend>(
+    pub(crate) fn draw<'a, B: DrawingBackend>(
         &self,
         area: &'a Area<B>,
     ) -> Result<Chart<'a, B>, DrawingAreaErrorKind<B::ErrorType>> {

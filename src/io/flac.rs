@@ -13,7 +13,7 @@ use std::io::{BufReader, BufWriter, Seek, SeekFrom, Write};
 const BLOCK: usize = 4096;
 
 /// Highest sample rate in Hz that the encoder accepts.
-pub const HIGHEST_RATE: u32 = 96_000;
+pub(crate) const HIGHEST_RATE: u32 = 96_000;
 
 /// Encodes the WAV file `wav`, of 16- or 24-bit integers and less than 4 GiB, into the empty file `out`. `name` is used
 /// in errors. The samples decode unchanged. The same WAV gives the same bytes on every machine: predictors are fixed
@@ -21,7 +21,7 @@ pub const HIGHEST_RATE: u32 = 96_000;
 ///
 /// # Errors
 /// [`Error::Value`] for floats and for rates above [`HIGHEST_RATE`], [`Error::Io`] if reading or writing fails.
-pub fn encode(wav: &mut File, out: &mut File, name: &str) -> Result<()> {
+pub(crate) fn encode(wav: &mut File, out: &mut File, name: &str) -> Result<()> {
     let failed = |source| Error::io(name, source);
     wav.seek(SeekFrom::Start(0)).map_err(failed)?;
     let reader = hound::WavReader::new(BufReader::new(wav)).map_err(|error| wrong(name, error))?;

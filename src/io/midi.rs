@@ -32,7 +32,7 @@ impl Song {
     ///
     /// # Errors
     /// As [`Song::read`].
-    pub fn read_leniently(reader: impl Read, origin: &str) -> crate::Result<(Self, Vec<String>)> {
+    pub(crate) fn read_leniently(reader: impl Read, origin: &str) -> crate::Result<(Self, Vec<String>)> {
         Self::parse_leniently(&read_file(reader, origin)?, origin)
     }
 

@@ -28,9 +28,9 @@ mod wav_format;
 
 pub use inputs::Inputs;
 pub use output::Output;
-pub use quantise::quantise;
+pub(crate) use quantise::quantise;
 pub use song::{Song, SongEvent};
-pub use song_cursor::{SILENCE_INTERVAL, SongCursor};
+pub(crate) use song_cursor::{SILENCE_INTERVAL, SongCursor};
 pub use target::Target;
 #[cfg(feature = "render")]
 pub use wav::WavWriter;

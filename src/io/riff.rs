@@ -79,7 +79,7 @@ impl Output {
     ///
     /// # Errors
     /// [`Error::Io`] if the output is not a file, cannot be changed, or has no complete header.
-    pub fn salvage_wav(&mut self, format: WavFormat) -> crate::Result<u64> {
+    pub(crate) fn salvage_wav(&mut self, format: WavFormat) -> crate::Result<u64> {
         let salvaged = match self.is_seekable() {
             true => salvage(self.stream(), &format),
             false => Err(ErrorKind::NotSeekable.into()),

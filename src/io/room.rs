@@ -9,7 +9,7 @@ impl Output {
     ///
     /// # Errors
     /// [`Error::Io`] with both sizes.
-    pub fn check_room(&self, bytes: u64) -> Result<()> {
+    pub(crate) fn check_room(&self, bytes: u64) -> Result<()> {
         let Some(room) = self.temporary().and_then(|path| fs4::available_space(path).ok()) else { return Ok(()) };
         if bytes <= room {
             return Ok(());

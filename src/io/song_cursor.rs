@@ -8,7 +8,7 @@ use std::borrow::Borrow;
 
 /// After the end of a song, silence is checked at multiples of this number of frames: often enough for an exact end,
 /// and at frames that do not depend on the block size.
-pub const SILENCE_INTERVAL: u64 = 64;
+pub(crate) const SILENCE_INTERVAL: u64 = 64;
 
 /// Most events at the end of a song that let go of keys and pedals: all notes off and three pedals on each channel.
 const MOST_LET_GO: usize = 16 * 4;
@@ -18,7 +18,7 @@ const MOST_LET_GO: usize = 16 * 4;
 /// When the song ends, keys and pedals that it has left down are let go of, as a player's hands and feet would: otherwise an
 /// organ's last key sounds for as long as the organ can.
 #[derive(Clone, Debug)]
-pub struct SongCursor<S> {
+pub(crate) struct SongCursor<S> {
     song: S,
     sample_rate: f64,
     next: usize,
@@ -30,24 +30,24 @@ pub struct SongCursor<S> {
 
 impl<S: Borrow<Song>> SongCursor<S> {
     /// The start of a song, at a sample rate in Hz.
-    pub fn new(song: S, sample_rate: f64) -> Self {
+    pub(crate) fn new(song: S, sample_rate: f64) -> Self {
         let song_frames = song.borrow().frames(sample_rate);
         Self { song, sample_rate, next: 0, frame: 0, song_frames, pressed: Pressed::default() }
     }
 
     /// Frames since the start of the song.
-    pub fn frame(&self) -> u64 {
+    pub(crate) fn frame(&self) -> u64 {
         self.frame
     }
 
     /// Length of the song in frames; after [`SongCursor::halt`], the length up to that point.
-    pub fn song_frames(&self) -> u64 {
+    pub(crate) fn song_frames(&self) -> u64 {
         self.song_frames
     }
 
     /// An upper bound of the number of events in any block of at most `frames` frames. Takes time in proportion to the number
     /// of events.
-    pub fn densest_block(&self, frames: usize) -> usize {
+    pub(crate) fn densest_block(&self, frames: usize) -> usize {
         let events = &self.song.borrow().events;
         let frame = |index: usize| events[index].frame(self.sample_rate);
         let (mut first, mut most) = (0, 0);
@@ -61,7 +61,7 @@ impl<S: Borrow<Song>> SongCursor<S> {
     }
 
     /// Appends the events of the next `frames` frames to `events`. Allocates only if `events` has not enough room.
-    pub fn advance(&mut self, frames: usize, events: &mut Vec<Event>) {
+    pub(crate) fn advance(&mut self, frames: usize, events: &mut Vec<Event>) {
         let end = self.frame.saturating_add(frames as u64);
         while let Some(event) = self.song.borrow().events.get(self.next) {
             let at = event.frame(self.sample_rate);
@@ -94,13 +94,13 @@ impl<S: Borrow<Song>> SongCursor<S> {
     }
 
     /// Ends the song at the present position. The next call of [`SongCursor::advance`] lets go of what is down.
-    pub fn halt(&mut self) {
+    pub(crate) fn halt(&mut self) {
         self.next = self.song.borrow().events.len();
         self.song_frames = self.song_frames.min(self.frame);
     }
 
     /// Whether the end was reached, all events were returned, and nothing is down.
-    pub fn is_over(&self) -> bool {
+    pub(crate) fn is_over(&self) -> bool {
         self.frame >= self.song_frames && self.next == self.song.borrow().events.len() && self.pressed.is_none()
     }
 }

@@ -35,7 +35,7 @@ pub struct WavFormat {
 
 impl WavFormat {
     /// Bytes of one frame.
-    pub fn frame_len(&self) -> u64 {
+    pub(crate) fn frame_len(&self) -> u64 {
         u64::from(self.channels) * u64::from(self.samples.bits() / 8)
     }
 

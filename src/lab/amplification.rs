@@ -10,7 +10,7 @@ use libm::{atan2, log, sqrt};
 
 /// The matrix of one step on `(x, v/ω)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Amplification {
+pub(crate) struct Amplification {
     rows: [[f64; 2]; 2],
 }
 
@@ -31,7 +31,7 @@ pub enum Tone {
 
 impl Amplification {
     /// The matrix of a method with steps of `h` seconds, for a linear system with a spring. Ignores target and force.
-    pub fn of(method: Method, system: &System, h: f64) -> Result<Self> {
+    pub(crate) fn of(method: Method, system: &System, h: f64) -> Result<Self> {
         if !system.is_linear() {
             return Err(Error::value("spring", "must be linear: the step of another depends on the amplitude"));
         }
@@ -43,7 +43,7 @@ impl Amplification {
     }
 
     /// The matrix of the oscillator's own step on `(x, v)`, in the oscillator's units.
-    pub fn of_step(coefficients: &Coefficients) -> Self {
+    pub(crate) fn of_step(coefficients: &Coefficients) -> Self {
         let step = |x: f64, v: f64| {
             let mut mass = HarmonicOscillator::new(&Coefficients { x0: x, v0: v, ..*coefficients });
             mass.step();
@@ -54,14 +54,14 @@ impl Amplification {
     }
 
     /// Determinant: the factor by which a step scales areas of the phase plane.
-    pub fn determinant(&self) -> f64 {
+    pub(crate) fn determinant(&self) -> f64 {
         let [[a, b], [c, d]] = self.rows;
         a * d - b * c
     }
 
     /// Growth in nepers per step of the fastest-growing state. The matrix is squared 40 times, which gives the
     /// logarithm of Gelfand's `‖Mⁿ‖^(1/n)` at n = 2⁴⁰.
-    pub fn growth(&self) -> f64 {
+    pub(crate) fn growth(&self) -> f64 {
         let mut matrix = self.rows;
         let (mut growth, mut share) = (0.0, 1.0);
         for _ in 0..=40 {
@@ -78,12 +78,12 @@ impl Amplification {
     }
 
     /// Whether every state stays bounded. The limit allows for rounding and for growth that is only linear.
-    pub fn is_bounded(&self) -> bool {
+    pub(crate) fn is_bounded(&self) -> bool {
         self.growth() < 1e-10
     }
 
     /// Pitch and decay of the eigenvalues, computed without the cancellation in `trace² − 4 det`.
-    pub fn tone(&self) -> Tone {
+    pub(crate) fn tone(&self) -> Tone {
         let [[a, b], [c, d]] = self.rows;
         let half_difference = 0.5 * (a - d);
         let discriminant = half_difference * half_difference + b * c;

@@ -35,7 +35,7 @@ impl Energy {
 }
 
 /// The largest stiffness in N/m on a motion through `state` without a force. It determines the shortest period.
-pub fn greatest_stiffness(system: &System, state: State) -> f64 {
+pub(crate) fn greatest_stiffness(system: &System, state: State) -> f64 {
     match system.spring {
         Spring::Linear | Spring::Pendulum => system.stiffness,
         Spring::Duffing { cubic } => {

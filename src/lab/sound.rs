@@ -10,7 +10,7 @@ use libm::{floor, hypot, log10};
 use std::f64::consts::TAU;
 
 /// Peak of a strike, −6 dBFS, so that it does not clip.
-pub const STRIKE: f64 = 0.5;
+pub(crate) const STRIKE: f64 = 0.5;
 /// Amplitude to which the limiter reduces a mass that explodes: −1 dBFS.
 pub const CEILING: f64 = 0.891_250_938_133_745_6;
 

@@ -80,7 +80,7 @@ impl System {
 
     /// The linear system with a mass of 1 kg that oscillates at `frequency` Hz and decays by 60 dB in `t60` seconds
     /// (infinite: no decay).
-    pub fn from_note(frequency: f64, t60: f64) -> Result<Self> {
+    pub(crate) fn from_note(frequency: f64, t60: f64) -> Result<Self> {
         if !(frequency > 0.0 && frequency.is_finite()) {
             return Err(Error::value("frequency", format!("must be greater than 0 Hz, got {frequency}")));
         }
@@ -127,7 +127,7 @@ impl System {
     }
 
     /// `ω = √(k/m)` in rad/s, of small undamped oscillations. Returns an error if there is no spring.
-    pub fn omega(&self) -> Result<f64> {
+    pub(crate) fn omega(&self) -> Result<f64> {
         if self.stiffness > 0.0 {
             Ok(sqrt(self.stiffness / self.mass))
         } else {
@@ -141,7 +141,7 @@ impl System {
     }
 
     /// Force of the spring in N at position `x`: `−∂V/∂x`.
-    pub fn spring_force(&self, x: f64) -> f64 {
+    pub(crate) fn spring_force(&self, x: f64) -> f64 {
         let d = x - self.target;
         match self.spring {
             Spring::Linear => -self.stiffness * d,
@@ -151,7 +151,7 @@ impl System {
     }
 
     /// Derivative of [`System::spring_force`] with respect to `x`, in N/m.
-    pub fn spring_gradient(&self, x: f64) -> f64 {
+    pub(crate) fn spring_gradient(&self, x: f64) -> f64 {
         let d = x - self.target;
         match self.spring {
             Spring::Linear => -self.stiffness,
@@ -162,13 +162,13 @@ impl System {
 
     /// `ẍ` in m/s².
     #[inline]
-    pub fn acceleration(&self, state: State, t: f64) -> f64 {
+    pub(crate) fn acceleration(&self, state: State, t: f64) -> f64 {
         (self.spring_force(state.x) - self.damping * state.v + self.force.at(t)) / self.mass
     }
 
     /// `ẏ = f(y, t)` of the equivalent first-order system, `y = (x, v)`.
     #[inline]
-    pub fn derivative(&self, state: State, t: f64) -> State {
+    pub(crate) fn derivative(&self, state: State, t: f64) -> State {
         State { x: state.v, v: self.acceleration(state, t) }
     }
 }

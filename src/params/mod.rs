@@ -105,7 +105,7 @@ impl Param {
     }
 
     /// Whether it belongs to the space, the reverberating body behind the voices. Real-time safe.
-    pub const fn is_of_space(self) -> bool {
+    pub(crate) const fn is_of_space(self) -> bool {
         Self::Space as usize <= self as usize && self as usize <= Self::SpaceMix as usize
     }
 

@@ -140,7 +140,7 @@ impl ModeTable {
 
     /// The table with a text from which its modes were made. Files contain that text instead of the modes. Allocates.
     #[must_use]
-    pub fn with_origin(self, origin: &str) -> Self {
+    pub(crate) fn with_origin(self, origin: &str) -> Self {
         Self { origin: Some(origin.into()), ..self }
     }
 
@@ -153,7 +153,7 @@ impl ModeTable {
     /// [`ModeTable::make_tables`] is called. It must return at least one table, in the order of the keys, each with as
     /// many modes as this one. Allocates.
     #[must_use]
-    pub fn with_keys(self, lowest: u8, make: impl Fn() -> Vec<ModeTable> + Send + Sync + 'static) -> Self {
+    pub(crate) fn with_keys(self, lowest: u8, make: impl Fn() -> Vec<ModeTable> + Send + Sync + 'static) -> Self {
         let by_key = ByKey { lowest, make: Box::new(make), made: OnceLock::new() };
         Self { by_key: Some(Arc::new(by_key)), ..self }
     }

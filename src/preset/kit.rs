@@ -7,7 +7,7 @@ use crate::sound::{Kit, Pad};
 use std::sync::Arc;
 
 /// The kit format version that is read and written.
-pub const KIT_VERSION: i64 = 1;
+pub(crate) const KIT_VERSION: i64 = 1;
 
 /// Presets on keys, with name, author, tags and comment.
 #[derive(Clone, Debug, PartialEq)]

@@ -79,7 +79,7 @@ impl Playable {
 }
 
 /// Whether a sound's name is a file name: it ends in `.toml` or contains a folder.
-pub fn is_file_name(name: &Path) -> bool {
+pub(crate) fn is_file_name(name: &Path) -> bool {
     name.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) || name.components().count() > 1
 }
 

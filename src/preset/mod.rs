@@ -29,8 +29,8 @@ use std::sync::Arc;
 
 pub use body::{body_of_modes, modes_of_body};
 pub use guide::{Family, Guide};
-pub use kit::{KIT_VERSION, KitPreset, Playable};
-pub use kit_load::is_file_name;
+pub use kit::{KitPreset, Playable};
+pub(crate) use kit_load::is_file_name;
 pub use load::MAX_FILE_SIZE;
 pub use pair::{LINK_KINDS, modes_of_pair, pair_of_modes};
 pub use phrase::{Phrase, PhraseNote};

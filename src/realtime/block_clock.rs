@@ -76,7 +76,7 @@ impl BlockClock {
 
     /// The frame of this block at which an event with this time stamp sounds: the first frame if the event is late,
     /// none if it belongs to a later block.
-    pub fn frame_of(&self, stamp: Stamp) -> Option<u32> {
+    pub(crate) fn frame_of(&self, stamp: Stamp) -> Option<u32> {
         let [before, time] = self.times;
         let at = match stamp {
             Stamp::System(instant) => self.seconds(instant) - self.offset.unwrap_or(0.0),

@@ -57,7 +57,7 @@ impl LiveSender {
     }
 
     /// Releases the keys and pedals that this sender holds. Returns false if the queue is full: some are then still held.
-    pub fn release_held(&mut self) -> bool {
+    pub(crate) fn release_held(&mut self) -> bool {
         for channel in 0..16 {
             for key in self.held.keys(channel) {
                 self.send_now(channel, EventKind::NoteOff { key, velocity: 0.5, id: None });
@@ -70,7 +70,7 @@ impl LiveSender {
     }
 
     /// Releases every note and pedal on every channel.
-    pub fn release_all(&mut self) {
+    pub(crate) fn release_all(&mut self) {
         for channel in 0..16 {
             for controller in [SUSTAIN, SOSTENUTO, ALL_NOTES_OFF] {
                 self.send_now(channel, EventKind::Control { controller, value: 0.0 });
@@ -79,7 +79,7 @@ impl LiveSender {
     }
 
     /// Fades out everything within milliseconds.
-    pub fn silence_all(&mut self) {
+    pub(crate) fn silence_all(&mut self) {
         for channel in 0..16 {
             self.send_now(channel, EventKind::Control { controller: ALL_SOUND_OFF, value: 0.0 });
         }

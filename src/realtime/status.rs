@@ -55,7 +55,7 @@ impl Status {
     }
 
     /// Stops the song at its present position.
-    pub fn halt_song(&self) {
+    pub(crate) fn halt_song(&self) {
         self.song_halted.store(true, Relaxed);
     }
 

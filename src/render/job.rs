@@ -91,7 +91,7 @@ impl<'a> Job<'a> {
     }
 
     /// Length of the rendering in frames, unless it depends on the sound ([`Tail::Auto`]).
-    pub fn known_frames(&self) -> Option<u64> {
+    pub(crate) fn known_frames(&self) -> Option<u64> {
         match self.options.tail {
             Tail::Auto => None,
             Tail::None => Some(self.song_frames()),

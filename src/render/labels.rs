@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// A mode of a note.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ModeLabel {
+pub(crate) struct ModeLabel {
     /// Frequency in Hz without temporary changes of pitch by sweep, glide, vibrato, wheels or tension.
     pub frequency: f64,
     /// T60 in seconds after the strike, without the damping by a release.
@@ -27,7 +27,7 @@ pub struct ModeLabel {
 
 /// A note, or one of its unison voices.
 #[derive(Clone, Debug, PartialEq)]
-pub struct NoteLabel {
+pub(crate) struct NoteLabel {
     /// MIDI channel, 0–15.
     pub channel: u8,
     /// MIDI key, 0–127.

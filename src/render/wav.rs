@@ -117,7 +117,7 @@ pub fn to_wav(
 ///
 /// # Errors
 /// As [`to_wav`].
-pub fn to_labelled_wav(
+pub(crate) fn to_labelled_wav(
     job: &Job,
     delivery: &Delivery,
     output: &mut Output,

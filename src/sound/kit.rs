@@ -11,13 +11,13 @@ use std::sync::Arc;
 pub const KEYS: usize = 128;
 
 /// Range of a pad's gain, in decibels.
-pub const GAINS_DB: RangeInclusive<f32> = -60.0..=12.0;
+pub(crate) const GAINS_DB: RangeInclusive<f32> = -60.0..=12.0;
 
 /// Range of a pad's pitch, in semitones on the MIDI scale: wide enough for every key and every audible frequency.
-pub const PITCHES: RangeInclusive<f64> = -60.0..=200.0;
+pub(crate) const PITCHES: RangeInclusive<f64> = -60.0..=200.0;
 
 /// Number of the last choke group.
-pub const CHOKE_GROUPS: u8 = 16;
+pub(crate) const CHOKE_GROUPS: u8 = 16;
 
 /// The pad of a key: the sound that the key plays, and how.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,7 +117,7 @@ impl Kit {
 
     /// The kit with a maximum number of notes at once, 1 to 64. A kit of one sound keeps the number of that sound.
     #[must_use]
-    pub fn with_voices(mut self, voices: u8) -> Self {
+    pub(crate) fn with_voices(mut self, voices: u8) -> Self {
         if !self.is_single() {
             self.values.set(Param::Voices, voices.into());
         }
@@ -126,7 +126,7 @@ impl Kit {
 
     /// The kit with all of its pads louder by a gain in dB, within [`GAINS_DB`]. Allocates.
     #[must_use]
-    pub fn with_gain(&self, gain_db: f32) -> Self {
+    pub(crate) fn with_gain(&self, gain_db: f32) -> Self {
         let mut kit = self.clone();
         for pad in kit.pads.iter_mut().flatten() {
             pad.gain_db += gain_db;
@@ -138,7 +138,7 @@ impl Kit {
     /// The kit with a value for a parameter of the effects after the voices, in place of its sounds' values. Does nothing for
     /// other parameters.
     #[must_use]
-    pub fn with_effect(mut self, param: Param, value: f32) -> Self {
+    pub(crate) fn with_effect(mut self, param: Param, value: f32) -> Self {
         if param.is_behind_voices() {
             self.values.set(param, value);
         }
@@ -177,7 +177,7 @@ impl Kit {
     }
 
     /// Whether the kit has only one sound. Real-time safe.
-    pub fn is_single(&self) -> bool {
+    pub(crate) fn is_single(&self) -> bool {
         self.sounds.len() == 1
     }
 

@@ -2,7 +2,7 @@
 
 use crate::files::{copy, replace, write};
 use crate::patch;
-use crate::shell::{cargo, root};
+use crate::shell::{cargo, root, run_to_end};
 use crate::symbols;
 use std::path::{Path, PathBuf};
 
@@ -43,22 +43,41 @@ pub(crate) fn run(release: bool) -> Result<PathBuf, String> {
     // Debug symbols are most of the library's size.
     let (profile, linking) = if release { ("--release", "-- -C strip=symbols") } else { ("", "") };
     patch::run()?;
-    let library = format!("{}sprung_plugin{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    let built = root().join("target").join(if release { "release" } else { "debug" });
-    let mut build = cargo(&format!(
+    build(&format!(
         "rustc --manifest-path plugin/Cargo.toml --lib --crate-type cdylib --target-dir target {profile} {linking}"
-    ));
-    if !build.status().map_err(|error| format!("cargo: {error}"))?.success() {
-        return Err("the plugin does not build".to_owned());
-    }
-    let library = built.join(library);
+    ))?;
+    let library = library(if release { "release" } else { "debug" });
     if release {
         symbols::check(&library)?;
     }
+    fill_all(&library)
+}
+
+/// The command that runs the plugin's own tests.
+pub(crate) const TESTS: &str = "test --manifest-path plugin/Cargo.toml --features standalone --no-fail-fast";
+
+/// Writes bundles with the library that [`TESTS`] builds, so that it is not compiled a second time with other features.
+pub(crate) fn of_the_tests() -> Result<PathBuf, String> {
+    build(&format!("{TESTS} --no-run"))?;
+    // Where cargo leaves what tests depend on.
+    fill_all(&library("debug/deps"))
+}
+
+fn build(arguments: &str) -> Result<(), String> {
+    run_to_end(&mut cargo(arguments), "the plugin does not build")
+}
+
+/// The library that cargo has built in a profile's folder.
+fn library(folder: &str) -> PathBuf {
+    let name = format!("{}sprung_plugin{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    root().join("target").join(folder).join(name)
+}
+
+fn fill_all(library: &Path) -> Result<PathBuf, String> {
     let folder = root().join("target/bundled");
     for format in Format::ALL {
         let bundle = folder.join(format.file_name());
-        replace(&bundle, |aside| fill(format, &library, aside))?;
+        replace(&bundle, |aside| fill(format, library, aside))?;
         println!("{}", bundle.display());
     }
     Ok(folder)

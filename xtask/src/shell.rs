@@ -1,6 +1,6 @@
 //! Runs other programs.
 
-use std::io::{BufRead as _, BufReader, Write as _};
+use std::io::{BufRead as _, BufReader, Write as _, pipe};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -30,14 +30,16 @@ pub(crate) fn succeeds(program: &str, arguments: &[&str]) -> bool {
     status.is_ok_and(|status| status.success())
 }
 
-/// Runs a command and shows its output as it appears. Returns whether it succeeded, and the lines of its stdout.
+/// Runs a command and shows its output as it appears. Returns whether it succeeded, and the lines of stdout and stderr.
 pub(crate) fn run_and_read(mut command: Command) -> Result<(bool, Vec<String>), String> {
     let program = command.get_program().to_string_lossy().into_owned();
     let failed = |error: std::io::Error| format!("{program}: {error}");
-    let mut child = command.stdout(Stdio::piped()).spawn().map_err(failed)?;
+    let (reader, writer) = pipe().map_err(failed)?;
+    let mut child = command.stdout(writer.try_clone().map_err(failed)?).stderr(writer).spawn().map_err(failed)?;
+    // It holds the pipe's other end, which must close for the lines to end.
+    drop(command);
     let mut lines = Vec::new();
-    let stdout = child.stdout.take().expect("stdout is piped");
-    for line in BufReader::new(stdout).split(b'\n') {
+    for line in BufReader::new(reader).split(b'\n') {
         let line = String::from_utf8_lossy(&line.map_err(failed)?).into_owned();
         // If the reader of stdout has gone, the suite continues.
         let _ = writeln!(std::io::stdout(), "{line}");

@@ -60,8 +60,8 @@ fn tests(suite: Suite) -> Result<Count, String> {
 
 /// Runs the plugin's own tests and those of the program, and tests the bundles that musicians install in real hosts.
 fn plugin(suite: Suite) -> Result<Count, String> {
-    let folder = bundle::run(suite == Suite::All)?;
-    let mut command = cargo("test --manifest-path plugin/Cargo.toml --features standalone --no-fail-fast");
+    let folder = if suite == Suite::All { bundle::run(true) } else { bundle::of_the_tests() }?;
+    let mut command = cargo(bundle::TESTS);
     command.env("SPRUNG_BUNDLES", folder);
     if suite == Suite::All {
         command.args(["--", "--include-ignored"]);

@@ -58,7 +58,7 @@ impl Fitted {
     }
 
     /// The key as musicians write it: `C4`, or `C4 +13 ct` between two keys.
-    pub fn key_name(&self) -> String {
+    pub(crate) fn key_name(&self) -> String {
         key_name(self.key)
     }
 }

@@ -210,7 +210,7 @@ pub fn partials(sound: &[f32]) -> usize {
 
 /// How much two sounds differ in timbre over their first 100 ms, in dB: the RMS difference of 24 mel bands at the same
 /// total level, over the bands within 60 dB.
-pub fn timbre_change(first: &[f32], second: &[f32]) -> f64 {
+pub(crate) fn timbre_change(first: &[f32], second: &[f32]) -> f64 {
     const LENGTH: usize = 8192;
     const LEAST_DB: f64 = -60.0;
     let bands = mel_bands(24, LENGTH);

@@ -5,7 +5,7 @@ use libm::{pow, sqrt};
 use realfft::RealFftPlanner;
 
 /// Centres of the octaves in Hz.
-pub const CENTRES: [f64; 9] = [63.0, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0, 16_000.0];
+pub(crate) const CENTRES: [f64; 9] = [63.0, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0, 16_000.0];
 
 /// Order of the octave filters (Butterworth, zero phase).
 const ORDER: f64 = 6.0;

@@ -26,7 +26,7 @@ use std::f64::consts::SQRT_2;
 
 /// Strength and speed of the cascade.
 #[derive(Clone, Copy, Debug)]
-pub struct Climb {
+pub(crate) struct Climb {
     /// Upper limit of a band's energy, as a fraction of the energy of the band half an octave below, 0–1.
     pub share: f64,
     /// Fraction of the missing energy that the lowest band passes on in a control tick, at full energy. Each band is faster
@@ -46,7 +46,7 @@ const MOST_ENERGY: f64 = 4.0;
 
 impl Climb {
     /// Below this fraction of full energy, no energy is passed on.
-    pub const LEAST_ENERGY: f64 = 1e-4;
+    pub(crate) const LEAST_ENERGY: f64 = 1e-4;
 }
 
 /// In a control tick, a band at most doubles its energy, plus this fraction of the total for each mode. So no mode starts
@@ -56,7 +56,7 @@ const SEED: f64 = 1e-8;
 impl Cells {
     /// Sorts the modes into bands of half an octave by their ratios, the lowest first. Call it before [`Cells::climb`],
     /// after [`Cells::load`] and whenever ratios have changed. Real-time safe.
-    pub fn sort_into_bands(&mut self) {
+    pub(crate) fn sort_into_bands(&mut self) {
         // Several minima side by side, so that none waits for the one before.
         let mut lowest = [f64::INFINITY; 8];
         for cell in self.iter() {
@@ -76,7 +76,7 @@ impl Cells {
     /// Passes energy on to higher modes for one control tick. Must be called at control ticks only. The modes keep their phases;
     /// a mode at rest starts without displacement, up or down by a random sign. Does nothing with the original formulas.
     /// Real-time safe.
-    pub fn climb(&mut self, climb: &Climb) {
+    pub(crate) fn climb(&mut self, climb: &Climb) {
         let mut bands = [Band::EMPTY; BANDS];
         self.iter().for_each(|cell| cell.bank.add_energies(&cell.bands, &mut bands));
         let total: f64 = bands.iter().map(|band| band.energy).sum();

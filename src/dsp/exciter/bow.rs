@@ -36,7 +36,7 @@ impl Bow {
     }
 
     /// The force on the point in that frame, if the point moves at `velocity`.
-    pub fn force_on(&self, frame: usize, velocity: f32) -> f32 {
+    pub(crate) fn force_on(&self, frame: usize, velocity: f32) -> f32 {
         let [speed, force] = self.at(frame);
         let slip = speed - velocity;
         let width = self.width * speed + f32::MIN_POSITIVE;

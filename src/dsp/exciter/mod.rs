@@ -83,7 +83,7 @@ impl Exciter {
     }
 
     /// Frames until no force is left.
-    pub fn frames_left(&self) -> u32 {
+    pub(crate) fn frames_left(&self) -> u32 {
         self.frames_left
     }
 
@@ -93,7 +93,7 @@ impl Exciter {
     }
 
     /// Whether any force of the strike in this slot is still to come.
-    pub fn is_acting(&self, slot: usize) -> bool {
+    pub(crate) fn is_acting(&self, slot: usize) -> bool {
         self.blows[slot].frames_left() > 0
     }
 

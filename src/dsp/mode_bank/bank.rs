@@ -204,7 +204,7 @@ impl ModeBank {
     }
 
     /// Sets the weight of mode `m` at the point of the bow. The squares of all weights must add up to 1.
-    pub fn set_bow_weight(&mut self, m: usize, weight: f32) {
+    pub(crate) fn set_bow_weight(&mut self, m: usize, weight: f32) {
         self.modes.bow.0[m] = weight;
     }
 
@@ -262,7 +262,7 @@ impl ModeBank {
     }
 
     /// Sets the pitch ratio of every mode at once, without a ramp: for modes at rest or pushed just now.
-    pub fn jump_to(&mut self, ratio: f64) {
+    pub(crate) fn jump_to(&mut self, ratio: f64) {
         self.leave_tables();
         self.tune();
         (self.ratio, self.until_tick, self.aimed) = (ratio, 0, true);
@@ -419,7 +419,7 @@ impl ModeBank {
 
     /// A copy of the bank with the state of another one, which has as many modes and renders nothing from tables.
     #[must_use]
-    pub fn with_state_of(&self, other: &Self) -> Self {
+    pub(crate) fn with_state_of(&self, other: &Self) -> Self {
         // In a tick that is rendered by tables, this bank's state is that of the tick's start, and the other's that of this frame.
         let motion =
             if matches!(self.motion, Motion::Tabled { .. }) { Motion::Still { ticks: 0 } } else { self.motion };

@@ -135,13 +135,13 @@ impl Overdrive {
     }
 
     /// The same bound, after input that is still to come.
-    pub fn tail_frames_after(&self) -> u64 {
+    pub(crate) fn tail_frames_after(&self) -> u64 {
         if self.is_off() { 0 } else { self.forget_frames.max(self.tail_frames()) }
     }
 
     /// Upper bound of the output from now on, without the overshoot of the filters, if the magnitude of the input is at most
     /// `peak`.
-    pub fn peak_after(&self, peak: f64) -> f64 {
+    pub(crate) fn peak_after(&self, peak: f64) -> f64 {
         let hardness = f64::from(self.hardness.after(0).max(self.hardness.target()));
         peak * sqrt(1.0 + hardness * hardness)
     }

@@ -60,7 +60,7 @@ impl Spring {
     }
 
     /// Frequency in Hz above which all waves are shorter than a turn.
-    pub fn transition_frequency(&self) -> f64 {
+    pub(crate) fn transition_frequency(&self) -> f64 {
         sqrt(LONG / (1.0 + LONG)) * (1.0 - LONG) * self.stiffness() / (self.coil_radius * self.coil_radius * TAU)
     }
 

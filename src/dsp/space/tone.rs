@@ -42,9 +42,9 @@ struct Shelf {
 
 impl Tone {
     /// Corner of the low shelf in Hz.
-    pub const LOW_CORNER: f64 = 250.0;
+    pub(crate) const LOW_CORNER: f64 = 250.0;
     /// Corner of the high shelf in Hz.
-    pub const HIGH_CORNER: f64 = 3500.0;
+    pub(crate) const HIGH_CORNER: f64 = 3500.0;
     /// Greatest boost and cut in dB.
     pub const MOST: f32 = 18.0;
 
@@ -96,14 +96,14 @@ impl Tone {
     }
 
     /// The same bound, after input that is still to come.
-    pub fn tail_frames_after(&self) -> u64 {
+    pub(crate) fn tail_frames_after(&self) -> u64 {
         if self.is_off() { 0 } else { self.forget_frames() + 3 * CONTROL_FRAMES as u64 }
     }
 
     /// Upper bound of the output from now on, if the magnitude of the input is at most `peak`. A shelf adds `g − 1` times the
     /// output of its one-pole filter. That output is no larger than the
     /// input; the bound takes twice the input, as a margin, and at least 1 for `|g − 1|`.
-    pub fn peak_after(&self, peak: f64) -> f64 {
+    pub(crate) fn peak_after(&self, peak: f64) -> f64 {
         self.shelves.iter().fold(peak, |peak, shelf| {
             let decibels = f64::from(shelf.decibels.after(0).max(shelf.decibels.target()));
             peak * (1.0 + 2.0 * (exp(decibels * LN_10 / 20.0) - 1.0).abs().max(1.0))

@@ -154,7 +154,7 @@ impl Ensemble {
 
     /// Calls `visit` with each voice that sounds now, and the number of the part that plays it. The order is always the
     /// same. Real-time safe as [`Synth::each_voice`](crate::engine::Synth::each_voice).
-    pub fn each_voice(&mut self, visit: &mut dyn FnMut(usize, VoiceState<'_>)) {
+    pub(crate) fn each_voice(&mut self, visit: &mut dyn FnMut(usize, VoiceState<'_>)) {
         for (part, Part { synth, .. }) in self.parts.iter_mut().enumerate() {
             synth.each_voice(&mut |voice| visit(part, voice));
         }
@@ -162,7 +162,7 @@ impl Ensemble {
 
     /// Tells the strikes of notes apart that are struck while they sound ([`VoiceState::strikes`]). To be called before the first
     /// note. Afterwards [`Ensemble::process`] is not real-time safe: it allocates at such strikes and while they act. The output stays the same.
-    pub fn tell_strikes_apart(&mut self) {
+    pub(crate) fn tell_strikes_apart(&mut self) {
         self.lender.voices_mut().for_each(|voice| voice.tell_strikes_apart());
     }
 

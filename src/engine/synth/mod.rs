@@ -30,7 +30,7 @@ pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 1_000..=768_000;
 ///
 /// # Errors
 /// A message that says what would be right.
-pub fn check_rate(sample_rate: u32) -> Result<(), String> {
+pub(crate) fn check_rate(sample_rate: u32) -> Result<(), String> {
     let (low, high) = SAMPLE_RATES.into_inner();
     if SAMPLE_RATES.contains(&sample_rate) {
         Ok(())
@@ -215,7 +215,7 @@ impl Synth {
 
     /// Calls `visit` with each voice that sounds now, in an order that is always the same. Real-time safe if `visit` is and
     /// strikes are not told apart; else it forgets those that have ended, which frees memory.
-    pub fn each_voice(&mut self, visit: &mut dyn FnMut(VoiceState<'_>)) {
+    pub(crate) fn each_voice(&mut self, visit: &mut dyn FnMut(VoiceState<'_>)) {
         for (note, voice) in self.manager.active() {
             visit(VoiceState::new(note, voice));
             voice.forget_ended_strikes();

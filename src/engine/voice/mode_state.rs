@@ -8,7 +8,7 @@ use crate::params::Param;
 
 /// A mode of a sounding voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ModeState {
+pub(crate) struct ModeState {
     /// Frequency at rest in Hz: without sweep, glide, vibrato, wheels and tension.
     pub frequency: f64,
     /// Present T60 in seconds, with damper and touch.
@@ -19,24 +19,24 @@ pub struct ModeState {
 }
 
 /// A strike that overlaps with others, or was made while its voice rang.
-pub struct StrikeState<'a> {
+pub(crate) struct StrikeState<'a> {
     voice: &'a SynthVoice,
     share: &'a Share,
 }
 
 impl StrikeState<'_> {
     /// Its note.
-    pub fn note(&self) -> &Note {
+    pub(crate) fn note(&self) -> &Note {
         &self.share.note
     }
 
     /// Whether its mallet, pluck or noise still act.
-    pub fn is_acting(&self) -> bool {
+    pub(crate) fn is_acting(&self) -> bool {
         self.share.is_acting(&self.voice.strike)
     }
 
     /// The voice's modes, with the amplitudes that this strike alone has given them.
-    pub fn modes(&self) -> impl Iterator<Item = ModeState> {
+    pub(crate) fn modes(&self) -> impl Iterator<Item = ModeState> {
         self.voice.states_of(&self.share.modes)
     }
 }

@@ -29,7 +29,7 @@ impl Footprint {
     /// The part of a pool of this size that notes may use as long as they do not fade. The rest, a quarter, is for
     /// stolen notes while they fade out.
     #[must_use]
-    pub fn for_sounding(self) -> Self {
+    pub(crate) fn for_sounding(self) -> Self {
         Self { voices: self.voices - self.voices / 4, cells: self.cells - self.cells / 4 }
     }
 }

@@ -17,9 +17,9 @@ pub use crate::params::{PlayMode, Priority};
 pub use footprint::Footprint;
 use held_keys::HeldKeys;
 use pedals::Pedals;
-pub use pool::VoicePool;
-pub use room::{has_room, make_room};
-pub use slot::MAX_UNISON;
+pub(crate) use pool::VoicePool;
+pub(crate) use room::{has_room, make_room};
+pub(crate) use slot::MAX_UNISON;
 use slot::Slot;
 pub use slots::MAX_VOICES;
 use slots::Slots;
@@ -29,7 +29,7 @@ pub use voice::{Unison, Voice};
 pub const MAX_ENDED: usize = 1024;
 
 /// Gives notes voices from a pool. Real-time safe after [`VoiceManager::new`].
-pub struct VoiceManager<V: Voice> {
+pub(crate) struct VoiceManager<V: Voice> {
     slots: Slots<V>,
     pedals: Pedals,
     polyphony: usize,
@@ -46,7 +46,7 @@ pub struct VoiceManager<V: Voice> {
 
 impl<V: Voice> VoiceManager<V> {
     /// A manager that takes its voices from a pool. Allocates.
-    pub fn new(pool: VoicePool<V>) -> Self {
+    pub(crate) fn new(pool: VoicePool<V>) -> Self {
         Self {
             slots: Slots::new(pool),
             pedals: Pedals::UP,
@@ -61,7 +61,7 @@ impl<V: Voice> VoiceManager<V> {
     }
 
     /// Stops all notes at once and lifts all pedals.
-    pub fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         self.slots.reset();
         self.pedals = Pedals::UP;
         self.held = HeldKeys::NONE;
@@ -71,7 +71,7 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Sets the maximum number of notes at once (1 to [`MAX_VOICES`]), the mode and the key priority, from the next
     /// note on, and the number of the context's patch.
-    pub fn configure(&mut self, polyphony: usize, mode: PlayMode, priority: Priority, patch: u32) {
+    pub(crate) fn configure(&mut self, polyphony: usize, mode: PlayMode, priority: Priority, patch: u32) {
         self.priority = priority;
         self.patch = patch;
         self.polyphony = polyphony.clamp(1, MAX_VOICES);
@@ -83,64 +83,64 @@ impl<V: Voice> VoiceManager<V> {
 
     /// The notes that have ended since the last [`VoiceManager::clear_ended`], in order of their ends. Each note
     /// appears once. Notes beyond the first [`MAX_ENDED`] are lost.
-    pub fn ended(&self) -> &[Note] {
+    pub(crate) fn ended(&self) -> &[Note] {
         &self.ended
     }
 
     /// Forgets the notes that have ended.
-    pub fn clear_ended(&mut self) {
+    pub(crate) fn clear_ended(&mut self) {
         self.ended.clear();
     }
 
     /// Reports a note as ended that gets no voice.
-    pub fn turn_away(&mut self, note: Note) {
+    pub(crate) fn turn_away(&mut self, note: Note) {
         self.retire(note);
     }
 
     /// The voices that play or fade, in an order that is always the same, each with its note.
-    pub fn active(&mut self) -> impl Iterator<Item = (&Note, &mut V)> {
+    pub(crate) fn active(&mut self) -> impl Iterator<Item = (&Note, &mut V)> {
         self.slots.in_use_mut().iter_mut().flat_map(Slot::voices_mut)
     }
 
     /// The voices of a key's notes on a channel that sound and do not fade out, each with its note.
-    pub fn sounding_on(&mut self, channel: u8, key: u8) -> impl Iterator<Item = (&Note, &mut V)> {
+    pub(crate) fn sounding_on(&mut self, channel: u8, key: u8) -> impl Iterator<Item = (&Note, &mut V)> {
         let notes = Notes::on(channel, key);
         self.slots.in_use_mut().iter_mut().filter(move |slot| slot.is_one_of(&notes)).flat_map(Slot::voices_mut)
     }
 
     /// The voices that play or fade, with their notes, read-only.
-    pub fn sounding_voices(&self) -> impl Iterator<Item = (&Note, &V)> {
+    pub(crate) fn sounding_voices(&self) -> impl Iterator<Item = (&Note, &V)> {
         self.slots.in_use().iter().flat_map(|slot| slot.voices().map(|voice| (&slot.note, voice)))
     }
 
     /// The voices and cells that no note uses.
-    pub fn pool(&mut self) -> &mut VoicePool<V> {
+    pub(crate) fn pool(&mut self) -> &mut VoicePool<V> {
         self.slots.pool()
     }
 
     /// Whether no voice plays or fades.
-    pub fn is_silent(&self) -> bool {
+    pub(crate) fn is_silent(&self) -> bool {
         self.slots.in_use().is_empty()
     }
 
     /// The largest number of notes that have sounded at once. Fading notes do not count.
-    pub fn peak(&self) -> usize {
+    pub(crate) fn peak(&self) -> usize {
         self.peak
     }
 
     /// Whether any key is down.
-    pub fn has_key_down(&self) -> bool {
+    pub(crate) fn has_key_down(&self) -> bool {
         !self.held.as_slice().is_empty() || self.slots.in_use().iter().any(|slot| slot.key_down)
     }
 
     /// Sets the brightness of a channel's held keys, for when the voice returns to them.
-    pub fn brighten(&mut self, channel: u8, brightness: f32) {
+    pub(crate) fn brighten(&mut self, channel: u8, brightness: f32) {
         let held = self.held.as_mut_slice().iter_mut().filter(|held| held.channel == channel);
         held.for_each(|held| held.brightness = brightness);
     }
 
     /// Frees the voices of notes that are over.
-    pub fn free_finished(&mut self) {
+    pub(crate) fn free_finished(&mut self) {
         for index in 0..self.slots.in_use().len() {
             let slot = &self.slots.in_use()[index];
             if !slot.is_free() && slot.is_over() {

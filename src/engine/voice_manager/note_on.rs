@@ -9,7 +9,7 @@ use crate::params::PlayMode;
 
 impl<V: Voice> VoiceManager<V> {
     /// The voices and cells that a note would take from the pool. None if it takes over the voices of another note.
-    pub fn need(&self, context: &V::Context, note: &Note) -> Footprint {
+    pub(crate) fn need(&self, context: &V::Context, note: &Note) -> Footprint {
         let taken_over = match self.mode {
             PlayMode::Poly => self.slot_to_restrike(note).is_some(),
             PlayMode::Mono | PlayMode::Legato => self.slot_to_take_over(note).is_some(),
@@ -19,7 +19,7 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Plays a note. Returns false if another key has priority in a monophonic mode: the note then waits until its key has
     /// priority.
-    pub fn note_on(&mut self, context: &V::Context, note: Note) -> bool {
+    pub(crate) fn note_on(&mut self, context: &V::Context, note: Note) -> bool {
         let is_poly = self.mode == PlayMode::Poly;
         if !is_poly && !self.takes_priority(note) {
             return false;

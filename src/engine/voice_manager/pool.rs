@@ -11,19 +11,19 @@ use super::footprint::Footprint;
 use super::voice::Voice;
 
 /// Free voices and cells. They are all alike, so any of them gives a note the same sound. Real-time safe once made.
-pub struct VoicePool<V: Voice> {
+pub(crate) struct VoicePool<V: Voice> {
     voices: Vec<Box<V>>,
     cells: Vec<Box<V::Cell>>,
 }
 
 impl<V: Voice> VoicePool<V> {
     /// An empty pool with room for `capacity`. Allocates.
-    pub fn empty(capacity: Footprint) -> Self {
+    pub(crate) fn empty(capacity: Footprint) -> Self {
         Self { voices: Vec::with_capacity(capacity.voices), cells: Vec::with_capacity(capacity.cells) }
     }
 
     /// A pool with `capacity` voices and cells, made by `voice` and `cell`. Allocates.
-    pub fn full(capacity: Footprint, voice: impl Fn() -> V, cell: impl Fn() -> V::Cell) -> Self {
+    pub(crate) fn full(capacity: Footprint, voice: impl Fn() -> V, cell: impl Fn() -> V::Cell) -> Self {
         let mut pool = Self::empty(capacity);
         pool.voices.extend((0..capacity.voices).map(|_| Box::new(voice())));
         pool.cells.extend((0..capacity.cells).map(|_| Box::new(cell())));
@@ -31,7 +31,7 @@ impl<V: Voice> VoicePool<V> {
     }
 
     /// The number of free voices and cells.
-    pub fn free(&self) -> Footprint {
+    pub(crate) fn free(&self) -> Footprint {
         Footprint { voices: self.voices.len(), cells: self.cells.len() }
     }
 
@@ -41,7 +41,7 @@ impl<V: Voice> VoicePool<V> {
     }
 
     /// Moves up to `some` voices and cells to another pool, which must have room for them.
-    pub fn lend(&mut self, other: &mut Self, some: Footprint) {
+    pub(crate) fn lend(&mut self, other: &mut Self, some: Footprint) {
         move_last(&mut self.voices, &mut other.voices, some.voices);
         move_last(&mut self.cells, &mut other.cells, some.cells);
     }

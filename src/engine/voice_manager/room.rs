@@ -6,7 +6,7 @@ use super::slot::Slot;
 use super::voice::Voice;
 
 /// Whether a note that needs `need` can start without stealing, in a pool of size `capacity` of which `free` is free.
-pub fn has_room(capacity: Footprint, free: Footprint, need: Footprint) -> bool {
+pub(crate) fn has_room(capacity: Footprint, free: Footprint, need: Footprint) -> bool {
     (capacity - free + need).fits(capacity.for_sounding())
 }
 
@@ -15,7 +15,7 @@ pub fn has_room(capacity: Footprint, free: Footprint, need: Footprint) -> bool {
 /// off. In both cases the quietest notes go first.
 ///
 /// The choice depends only on the state at this frame, so it is the same for all block sizes.
-pub fn make_room<P, V: Voice>(
+pub(crate) fn make_room<P, V: Voice>(
     players: &mut [P],
     manager: impl Fn(&mut P) -> &mut VoiceManager<V>,
     capacity: Footprint,

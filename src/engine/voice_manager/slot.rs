@@ -6,7 +6,7 @@ use super::voice::{Unison, Voice};
 use crate::engine::note::{Note, Notes};
 
 /// Most voices that play one note.
-pub const MAX_UNISON: usize = 8;
+pub(crate) const MAX_UNISON: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum State {

@@ -37,7 +37,7 @@ impl Recording {
     ///
     /// # Errors
     /// [`Error::Format`] for another rate, and for samples that are not finite.
-    pub fn mono_at(&self, sample_rate: u32, name: &str) -> Result<Vec<f32>> {
+    pub(crate) fn mono_at(&self, sample_rate: u32, name: &str) -> Result<Vec<f32>> {
         if self.sample_rate != sample_rate {
             let message = format!("its rate is {} Hz: expected {sample_rate} Hz, that of the output", self.sample_rate);
             return Err(Error::format(name, message));

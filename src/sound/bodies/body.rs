@@ -13,10 +13,10 @@ pub const DEFAULT_FREQUENCY: f64 = 261.625_565_300_598_6;
 pub(super) const FREQUENCY_RANGE: (f64, f64) = (1.0, 20_000.0);
 
 /// Shortest and longest T60 of a mode, in seconds. Others are clamped.
-pub const T60_RANGE: (f64, f64) = (0.001, 60.0);
+pub(crate) const T60_RANGE: (f64, f64) = (0.001, 60.0);
 
 /// Lowest and highest ratio of a mode, the same as in a patch. Modes outside this range are left out.
-pub const RATIO_RANGE: (f64, f64) = (0.01, 1000.0);
+pub(crate) const RATIO_RANGE: (f64, f64) = (0.01, 1000.0);
 
 /// What determines the frequency of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use libm::pow;
 use std::f64::consts::PI;
 
 /// `ln 1000`: the level has fallen by 60 dB when `rate · time` reaches this value.
-pub const LN_1000: f64 = -LN_MINUS_60_DB;
+pub(crate) const LN_1000: f64 = -LN_MINUS_60_DB;
 
 /// Decay rate of a mode's amplitude, in 1/s: `b0 + b1 · f^power`, with f in Hz.
 #[derive(Clone, Copy, Debug, PartialEq)]

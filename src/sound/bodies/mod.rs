@@ -51,9 +51,11 @@ mod timpani;
 mod tube;
 
 pub use bed::{Bed, BedKind};
-pub use body::{Body, DEFAULT_FREQUENCY, Pitch, RATIO_RANGE, T60_RANGE};
+pub(crate) use body::RATIO_RANGE;
+pub use body::{Body, DEFAULT_FREQUENCY, Pitch};
 pub use fields::{FIELDS, Field, MAX_MODES};
-pub use material::{LN_1000, Loss, MATERIALS, Material};
+pub(crate) use material::LN_1000;
+pub use material::{Loss, MATERIALS, Material};
 pub use model::{CustomMode, Model};
 pub use modes::BodyMode;
 pub use partial::Point;

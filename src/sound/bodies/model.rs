@@ -88,7 +88,7 @@ pub enum Model {
 
 impl Model {
     /// The name of [`Model::Custom`] in presets, which give it a list of modes.
-    pub const CUSTOM: &str = "custom";
+    pub(crate) const CUSTOM: &str = "custom";
 
     /// One of each model with its starting values, and its name in presets. [`Model::Custom`] is not among them, because
     /// it has no modes to start with.

@@ -13,5 +13,5 @@ pub struct Size {
 
 impl Size {
     /// A string of half a metre: the starting values in files and on knobs.
-    pub const DEFAULT: Size = Size { length: 0.5, thickness: 1e-3, tension: 1000.0 };
+    pub(crate) const DEFAULT: Size = Size { length: 0.5, thickness: 1e-3, tension: 1000.0 };
 }

@@ -26,7 +26,7 @@ pub struct Drum {
 
 impl Drum {
     /// The 65 cm drum with a Mylar head that Rossing (1982) and Christian et al. (1984) measured.
-    pub const DEFAULT: Drum = Drum { radius: 0.328, density: 0.262, volume: 0.14 };
+    pub(crate) const DEFAULT: Drum = Drum { radius: 0.328, density: 0.262, volume: 0.14 };
 }
 
 /// One mode during the computation: its `ω²` in 1/s², and the membrane modes it consists of, with their shares.

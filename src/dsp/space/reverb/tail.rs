@@ -18,7 +18,7 @@ impl ModalReverb {
 
     /// The same bound, if `frames` frames of input come before the silence. The magnitudes of this input, as the mean of both
     /// sides, sum to at most `input`. Endless if there is a next body, since its modes are not loaded yet.
-    pub fn tail_frames_after(&self, frames: u64, input: f64) -> u64 {
+    pub(crate) fn tail_frames_after(&self, frames: u64, input: f64) -> u64 {
         if self.state == State::Off {
             return if self.dry.is_moving() { frames.max(self.dry.frames_left().into()) } else { frames };
         }
@@ -54,7 +54,7 @@ impl ModalReverb {
 
     /// Upper bound of the output from now on, if the magnitude of the input is at most `peak` on either side and its magnitudes
     /// sum to at most `input`. Real-time safe.
-    pub fn peak_after(&self, peak: f64, input: f64) -> f64 {
+    pub(crate) fn peak_after(&self, peak: f64, input: f64) -> f64 {
         let dry = f64::from(self.dry.after(0).max(self.dry.target()));
         peak * dry + self.loudest_wet() * self.body.peak(self.input + input)
     }
