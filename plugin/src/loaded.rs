@@ -58,7 +58,7 @@ pub(crate) fn positions_of(values: &Values) -> [f32; PARAM_COUNT] {
 /// thread is using the slot, it continues with its present sound until the next block.
 ///
 /// No thread blocks on the mutex: writers try again until they get it. So unlocking never has to wake a thread, and the
-/// audio thread makes no system call. A writer keeps a reference to each sound on a shelf. The audio thread takes
+/// audio thread makes no system call. A writer keeps a reference to each sound in a collector. The audio thread takes
 /// references only from the slot, so that it never returns to a sound that it has dropped, and never drops the last
 /// reference.
 pub(crate) struct Slot(Mutex<Arc<Loaded>>);
@@ -101,7 +101,7 @@ mod tests {
     use sprung::params::Param;
     use sprung::patch::Patch;
     use sprung::preset::Preset;
-    use sprung::sound::Shelf;
+    use sprung::sound::Collector;
     use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
     use std::time::{Duration, Instant};
 
@@ -117,8 +117,8 @@ mod tests {
         // Data beside the slot, like the knobs.
         let (slot, beside) = (Slot::new(first.clone()), AtomicU64::new(0));
         let done = AtomicBool::new(false);
-        let shelf = Shelf::default();
-        shelf.keep(&first);
+        let collector = Collector::default();
+        collector.keep(&first);
         drop(first);
         let mut most = 0;
         std::thread::scope(|scope| {
@@ -142,14 +142,14 @@ mod tests {
                     break;
                 }
                 let next = Arc::new(loaded(both[number as usize % 2], number));
-                shelf.keep(&next);
+                collector.keep(&next);
                 slot.put(next, || beside.store(number, Ordering::Relaxed));
-                most = most.max(shelf.collect());
+                most = most.max(collector.collect());
             }
             assert_eq!(reader.join().unwrap(), 1_000);
         });
         assert!(most <= 3, "{most} were kept at once");
-        assert_eq!(shelf.collect(), 1, "what is in the slot stays");
+        assert_eq!(collector.collect(), 1, "what is in the slot stays");
         slot.read(|_| assert!(slot.read(|_| ()).is_none(), "two at once"));
     }
 

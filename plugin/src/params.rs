@@ -12,7 +12,7 @@ use nice_plug_core::params::InternalParamMut;
 use nice_plug_core::params::internals::ParamPtr;
 use sprung::params::{Change, PARAM_COUNT, PARAMS, ParamInfo, Unit};
 use sprung::preset::Playable;
-use sprung::sound::Shelf;
+use sprung::sound::Collector;
 use std::array::from_fn;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -116,7 +116,7 @@ struct Locked {
     /// The sound that was loaded last; the slot has it too.
     loaded: Arc<Loaded>,
     /// All sounds that the audio thread may still refer to, including the last one.
-    may_sound: Shelf<Loaded>,
+    may_sound: Collector<Loaded>,
     /// How many states the host has loaded.
     loads: u64,
 }
@@ -138,7 +138,7 @@ impl Default for SprungParams {
         let State { playable, positions, view, .. } = state;
         let knobs: Vec<Knob> = PARAMS.iter().map(Knob::new).collect();
         knobs.iter().zip(positions).for_each(|(knob, position)| knob.turn(position));
-        let may_sound = Shelf::default();
+        let may_sound = Collector::default();
         may_sound.keep(&loaded);
         let locked = Locked { playable, view, complaints: Arc::new([]), loaded: loaded.clone(), may_sound, loads: 0 };
         let (link, extent) = (Link::default(), Extent::default());

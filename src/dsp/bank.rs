@@ -7,7 +7,7 @@ use super::{ClassicBank, ModeBank};
 
 /// Selects the formulas that turn pitch and decay into coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Law {
+pub enum Recurrence {
     /// Tuning and decay are exact, also during pitch bends; amplitudes do not depend on the pitch.
     Exact,
     /// The original formulas ([`super::Coefficients::seed`]), with the sweep kept below the value at which they are
@@ -15,11 +15,11 @@ pub enum Law {
     Classic,
 }
 
-/// A bank of modes with either law. Each method does the same as the method of [`ModeBank`] with its name. Real-time safe.
+/// A bank of modes with either recurrence. Each method does the same as the method of [`ModeBank`] with its name. Real-time safe.
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant, reason = "both are large, and a voice has one of them without allocating")]
 pub enum Bank {
-    /// By the exact law.
+    /// By the exact recurrence.
     Exact(ModeBank),
     /// By the original formulas.
     Classic(ClassicBank),
@@ -36,24 +36,24 @@ macro_rules! either {
 }
 
 impl Bank {
-    /// An empty bank of the exact law.
+    /// An empty bank of the exact recurrence.
     pub fn new(sample_rate: f64) -> Self {
         Self::Exact(ModeBank::new(sample_rate))
     }
 
-    /// An empty bank with this law.
-    fn of(law: Law, sample_rate: f64) -> Self {
-        match law {
-            Law::Exact => Self::new(sample_rate),
-            Law::Classic => Self::Classic(ClassicBank::new(sample_rate)),
+    /// An empty bank with this recurrence.
+    fn of(recurrence: Recurrence, sample_rate: f64) -> Self {
+        match recurrence {
+            Recurrence::Exact => Self::new(sample_rate),
+            Recurrence::Classic => Self::Classic(ClassicBank::new(sample_rate)),
         }
     }
 
-    /// Replaces the bank by an empty one with another law. Does nothing if the bank has this law already.
-    pub(crate) fn set_law(&mut self, law: Law, sample_rate: f64) {
-        match (law, &*self) {
-            (Law::Exact, Self::Exact(_)) | (Law::Classic, Self::Classic(_)) => {}
-            _ => *self = Self::of(law, sample_rate),
+    /// Replaces the bank by an empty one with another recurrence. Does nothing if the bank has this recurrence already.
+    pub(crate) fn set_recurrence(&mut self, recurrence: Recurrence, sample_rate: f64) {
+        match (recurrence, &*self) {
+            (Recurrence::Exact, Self::Exact(_)) | (Recurrence::Classic, Self::Classic(_)) => {}
+            _ => *self = Self::of(recurrence, sample_rate),
         }
     }
 
@@ -135,7 +135,7 @@ impl Bank {
         }
     }
 
-    /// See [`ModeBank::with_state_of`]. The other bank has the same law.
+    /// See [`ModeBank::with_state_of`]. The other bank has the same recurrence.
     pub(super) fn with_state_of(&self, other: &Self) -> Self {
         match (self, other) {
             (Self::Exact(bank), Self::Exact(other)) => Self::Exact(bank.with_state_of(other)),

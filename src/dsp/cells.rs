@@ -5,7 +5,7 @@ mod cascade;
 pub(crate) use cascade::Climb;
 
 use super::CONTROL_FRAMES;
-use super::bank::{Bank, Law};
+use super::bank::{Bank, Recurrence};
 use super::exciter::{Bow, Drive};
 use super::mode_bank::tail::Energies;
 use super::mode_bank::{ExcitationRows, MAX_MODES, ModeRows};
@@ -123,13 +123,13 @@ impl Cells {
     /// ratios, T60 scales and squared shapes at the point of touch. Nothing remains of earlier modes.
     pub fn load<T>(
         &mut self,
-        law: Law,
+        recurrence: Recurrence,
         sample_rate: f64,
         modes: &[T],
         setup: impl Fn(&[T], [&[f64; MAX_MODES]; 3]) -> ModeRows,
     ) {
         for (Cell { bank, ratios, t60_scales, touched, .. }, modes) in self.iter_mut().zip(modes.chunks(MAX_MODES)) {
-            bank.set_law(law, sample_rate);
+            bank.set_recurrence(recurrence, sample_rate);
             bank.load(&setup(modes, [ratios, t60_scales, &touched.map(f64::from)]));
         }
         self.len = self.iter().map(|cell| cell.bank.len()).sum();

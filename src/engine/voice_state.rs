@@ -31,8 +31,7 @@ impl<'a> VoiceState<'a> {
     }
 
     /// The strikes on it that overlap with others or were made while it rang, each with what it alone has given the modes. They are
-    /// here until they no longer act, and once more. Empty unless [`Ensemble::tell_strikes_apart`](super::Ensemble::tell_strikes_apart) was called.
-    /// Real-time safe.
+    /// here until they no longer act, and once more. Empty unless `Ensemble::separate_strikes` was called. Real-time safe.
     pub(crate) fn strikes(&self) -> impl Iterator<Item = StrikeState<'_>> {
         self.voice.strikes()
     }

@@ -10,7 +10,7 @@ use super::stream::Source;
 use crate::engine::{Ensemble, Event, EventKind, TelemetryWriter};
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
 use crate::sound::kit::KEYS;
-use crate::sound::{Kit, Mix, Shelf, Tuning};
+use crate::sound::{Collector, Kit, Mix, Tuning};
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::sync::Arc;
 
@@ -43,13 +43,13 @@ pub struct Setup<'a> {
 /// Sends kits to a player, and frees them when the player no longer uses them.
 pub struct KitSender {
     queue: Producer<(u8, Arc<Kit>)>,
-    shelf: Shelf,
+    collector: Collector,
 }
 
 impl KitSender {
     /// Plays `kit` on a channel from its next note on. Returns false if too many kits are waiting already.
     pub fn send(&mut self, channel: u8, kit: &Arc<Kit>) -> bool {
-        self.shelf.keep(kit);
+        self.collector.keep(kit);
         self.queue.push((channel, kit.clone())).is_ok()
     }
 }
@@ -74,7 +74,7 @@ pub struct Player {
     tail: u64,
     ended: bool,
     /// Keeps the received kits alive. Fields are dropped in order, so this one must come after the ensemble.
-    _shelf: Shelf,
+    _collector: Collector,
 }
 
 impl Player {
@@ -84,7 +84,7 @@ impl Player {
         let song = setup.song.map(|song| SongCursor::new(song, sample_rate));
         let densest = song.as_ref().map_or(0, |song| song.densest_block(MAX_BLOCK));
         let (queue, kits) = RingBuffer::new(KIT_CAPACITY);
-        let shelf = Shelf::default();
+        let collector = Collector::default();
         let ensemble = Ensemble::of_kits(sample_rate, setup.seed, setup.kit, setup.programs.to_vec());
         let channels = setup.channels.iter();
         let mut ensemble = channels.fold(ensemble, |ensemble, (channel, kit)| ensemble.with_kit(*channel, kit));
@@ -112,9 +112,9 @@ impl Player {
             fade: Fade::new(sample_rate),
             tail: 0,
             ended: false,
-            _shelf: shelf.clone(),
+            _collector: collector.clone(),
         };
-        (player, KitSender { queue, shelf })
+        (player, KitSender { queue, collector })
     }
 
     /// Frames per second.

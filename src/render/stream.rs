@@ -48,7 +48,7 @@ impl Job<'_> {
         self.options.check()?;
         let mut stream = Stream::new(self);
         if labels.is_some() {
-            stream.ensemble.tell_strikes_apart();
+            stream.ensemble.separate_strikes();
         }
         let block = || [vec![0.0; self.options.block], vec![0.0; self.options.block]];
         let [mut now, mut next] = [block(), block()];

@@ -6,25 +6,25 @@
 //! bits of sounding notes with and without 300 changes of kit.
 //!
 //! Instruments drop their references to sounds before the synth drops its reference to the kit, which also refers to
-//! each of them; so only the reference to the kit must be kept on a [`Shelf`]. `tests/engine/allocation.rs` exchanges a
+//! each of them; so only the reference to the kit must be kept in a [`Collector`]. `tests/engine/allocation.rs` exchanges a
 //! thousand kits per second, each made and dropped meanwhile.
 //!
 //! The parameters of a kit of several sounds start at the defaults: each sound's value is as far from its own value, in
 //! knob travel, as the kit's value is from the default.
 
 pub mod bodies;
+mod collector;
 pub(crate) mod contact;
 pub mod coupled;
 pub mod kit;
 mod mix;
 pub mod pairs;
-mod shelf;
 pub mod tuning;
 
+pub use collector::Collector;
 pub use contact::{Contact, contact_time};
 pub use kit::{Kit, Pad};
 pub use mix::Mix;
-pub use shelf::Shelf;
 pub use tuning::Tuning;
 
 use crate::patch::Patch;
@@ -33,7 +33,7 @@ use crate::patch::Patch;
 ///
 /// An engine plays sounds as parts of a [`Kit`]. Other modes, routes, tunings or pads need another sound or kit:
 /// sounding notes keep the sound that they were started with. Only parameter values change inside the engine, by events.
-/// Sounds are made and freed outside the audio thread: see [`Shelf`].
+/// Sounds are made and freed outside the audio thread: see [`Collector`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sound {
     patch: Patch,

@@ -7,7 +7,7 @@ use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use sprung::render::Meter;
 use sprung::sound::bodies::{Body, Model};
 use sprung::sound::pairs::{Link, Pair};
-use sprung::sound::{Kit, Mix, Pad, Shelf, Sound, Tuning};
+use sprung::sound::{Collector, Kit, Mix, Pad, Sound, Tuning};
 use std::sync::Arc;
 
 /// Every kind of event, on every channel, with constant stealing and choking.
@@ -105,7 +105,7 @@ fn the_ban_bites() {
 /// A thousand kits per second of audio, each created during playing and dropped when the next one replaces it.
 #[test]
 fn kits_come_and_go_without_allocating_or_freeing() {
-    let shelf = Shelf::default();
+    let collector = Collector::default();
     let sounds: Vec<Arc<Sound>> = (1..=128).map(|n| Arc::new(Sound::new(modes(n % 64)))).collect();
     let pads = |sounds: usize| (0..128).map(|key| Some(Pad::of(key % sounds))).collect();
     let kit = |n: usize| {
@@ -122,8 +122,8 @@ fn kits_come_and_go_without_allocating_or_freeing() {
     let (mut most, mut loudest) = (0, 0.0_f32);
     for n in 0..1000_u32 {
         let kit = kit(n as usize);
-        shelf.keep(&kit);
-        most = shelf.collect().max(most);
+        collector.keep(&kit);
+        most = collector.collect().max(most);
         let sent = [kit];
         let channel = (n % 16) as u8;
         let events = [
@@ -140,14 +140,14 @@ fn kits_come_and_go_without_allocating_or_freeing() {
     assert!(loudest > 0.1, "something sounded");
     assert!(most <= 18, "{most} kits are kept for 16 channels");
     drop(ensemble);
-    assert_eq!(shelf.collect(), 0);
+    assert_eq!(collector.collect(), 0);
     assert_eq!(violation_count(), 0, "allocations on the audio thread");
 }
 
 /// Replaces the bodies of the space and changes the parameters of all effects behind the voices while they sound.
 #[test]
 fn spaces_come_and_go_without_allocating() {
-    let shelf = Shelf::default();
+    let collector = Collector::default();
     let rows: Vec<_> = PARAMS.iter().filter(|info| info.param.is_behind_voices()).collect();
     let kits: Vec<Arc<Kit>> = (0..8)
         .map(|n| {
@@ -158,10 +158,10 @@ fn spaces_come_and_go_without_allocating() {
             Kit::of_patch(&patch.with(Param::Space, (n % 4) as f32))
         })
         .collect();
-    kits.iter().for_each(|kit| shelf.keep(kit));
+    kits.iter().for_each(|kit| collector.keep(kit));
     let mut synth = Synth::new(48_000.0, 1);
     synth.reserve_space();
-    // The synth's first kit is on no shelf, so it is replaced here, where freeing is allowed. The shelf keeps all other kits.
+    // The synth's first kit is in no collector, so it is replaced here, where freeing is allowed. The collector keeps all other kits.
     synth.set_kit(&kits[7]);
     let (mut left, mut right) = ([0.0; 64], [0.0; 64]);
     let mut loudest = 0.0_f32;

@@ -8,9 +8,9 @@ use sprung::Result;
 use sprung::lab::method::Method;
 use sprung::lab::system::{Force, Spring, State, System};
 
-/// Law of the spring.
+/// Force law of the spring.
 #[derive(Clone, Copy, ValueEnum)]
-enum Law {
+enum ForceLaw {
     Linear,
     Duffing,
     Pendulum,
@@ -38,9 +38,9 @@ pub(super) struct SystemArgs {
     /// Where the spring pulls to, in m
     #[arg(long, default_value_t = 0.0, value_name = "M")]
     target: f64,
-    /// Law of the spring: a pendulum's force is the stiffness times the sine of the angle
+    /// Force law of the spring: a pendulum's force is the stiffness times the sine of the angle
     #[arg(long, default_value = "linear")]
-    spring: Law,
+    spring: ForceLaw,
     /// Cubic part of a Duffing spring, in N/m³, 0 or more
     #[arg(long, default_value_t = 0.0, value_name = "N/M³")]
     cubic: f64,
@@ -56,9 +56,9 @@ impl SystemArgs {
     /// The system and its initial state. Errors name the option with the invalid value.
     pub(super) fn build(&self) -> Result<(System, State)> {
         let spring = match self.spring {
-            Law::Linear => Spring::Linear,
-            Law::Duffing => Spring::Duffing { cubic: self.cubic },
-            Law::Pendulum => Spring::Pendulum,
+            ForceLaw::Linear => Spring::Linear,
+            ForceLaw::Duffing => Spring::Duffing { cubic: self.cubic },
+            ForceLaw::Pendulum => Spring::Pendulum,
         };
         let system = System {
             mass: self.mass,

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::dsp::CONTROL_FRAMES;
-use crate::dsp::bank::Law;
+use crate::dsp::bank::Recurrence;
 use crate::dsp::cells::Cell;
 use crate::dsp::exciter::Drive;
 use crate::dsp::mode_bank::{ExcitationRows, ModeSetup};
@@ -20,7 +20,7 @@ fn half_octaves_are_counted() {
 }
 
 /// A body of modes with these ratios and amplitudes, struck.
-fn struck(ratios: &[f64], amplitudes: &[f32], t60: f64, law: Law) -> Cells {
+fn struck(ratios: &[f64], amplitudes: &[f32], t60: f64, recurrence: Recurrence) -> Cells {
     let mut cells = Cells::EMPTY;
     (0..Cells::count_for(ratios.len())).for_each(|_| assert!(cells.add(Box::new(Cell::new(RATE))).is_none()));
     cells.ratios_mut().flatten().zip(ratios).for_each(|(to, ratio)| *to = *ratio);
@@ -28,7 +28,7 @@ fn struck(ratios: &[f64], amplitudes: &[f32], t60: f64, law: Law) -> Cells {
         let setup = |ratio: &f64| ModeSetup { frequency: 60.0 * ratio, t60, left: 1.0, right: 1.0 };
         modes.iter().map(setup).collect()
     };
-    cells.load(law, RATE, ratios, setup);
+    cells.load(recurrence, RATE, ratios, setup);
     for (cell, amplitudes) in amplitudes.chunks(MAX_MODES).enumerate() {
         let mut gains = ExcitationRows::NONE;
         gains.push[..amplitudes.len()].copy_from_slice(amplitudes);
@@ -64,7 +64,7 @@ fn energy_never_rises() {
         // Some modes are at rest, some nearly.
         let amplitude = |m: usize| [0.0, 1e-18, 1e-6, 1.0][m % 4] * uniform(stream, 500 + m as u64);
         let amplitudes: Vec<f32> = (0..modes).map(amplitude).collect();
-        let mut cells = struck(&ratios, &amplitudes, 0.01 + 20.0 * unit(2), Law::Exact);
+        let mut cells = struck(&ratios, &amplitudes, 0.01 + 20.0 * unit(2), Recurrence::Exact);
         let full = libm::exp10(8.0 * unit(3) - 6.0);
         let climb = Climb { share: unit(4), speed: libm::exp10(4.0 * unit(5) - 3.0), full, key: case };
         for tick in 0..12_u64 {
@@ -95,7 +95,7 @@ fn modes_at_rest_are_woken_with_the_phases_of_the_key_and_keep_ringing() {
     let mut amplitudes = [0.0; 100];
     amplitudes[0] = 1.0;
     let run = |key: u64| {
-        let mut cells = struck(&ratios, &amplitudes, 30.0, Law::Exact);
+        let mut cells = struck(&ratios, &amplitudes, 30.0, Recurrence::Exact);
         let mut heard = vec![];
         for _ in 0..300 {
             cells.climb(&Climb { share: 0.5, speed: 0.02, full: 1.0, key });
@@ -118,11 +118,11 @@ fn modes_at_rest_are_woken_with_the_phases_of_the_key_and_keep_ringing() {
 #[test]
 fn a_soft_sound_keeps_its_spectrum_to_the_bit() {
     let ratios = [1.0, 2.3, 4.1, 9.0];
-    for (law, full) in [(Law::Exact, 2e4), (Law::Classic, 1.0)] {
-        let mut cells = struck(&ratios, &[1.0, 0.1, 0.0, 0.0], 1.0, law);
+    for (recurrence, full) in [(Recurrence::Exact, 2e4), (Recurrence::Classic, 1.0)] {
+        let mut cells = struck(&ratios, &[1.0, 0.1, 0.0, 0.0], 1.0, recurrence);
         let before = energies(&cells);
         cells.climb(&Climb { share: 1.0, speed: 0.1, full, key: 1 });
-        assert_eq!(energies(&cells), before, "{law:?}");
+        assert_eq!(energies(&cells), before, "{recurrence:?}");
     }
 }
 
@@ -130,7 +130,7 @@ fn a_soft_sound_keeps_its_spectrum_to_the_bit() {
 #[test]
 fn each_band_comes_to_its_share_of_the_one_below() {
     let ratios = [1.0, 1.5, 3.2, 3.3, 6.0];
-    let mut cells = struck(&ratios, &[1.0, 0.0, 0.0, 0.0, 0.0], 1e9, Law::Exact);
+    let mut cells = struck(&ratios, &[1.0, 0.0, 0.0, 0.0, 0.0], 1e9, Recurrence::Exact);
     for _ in 0..3000 {
         cells.climb(&Climb { share: 0.5, speed: 0.2, full: 0.5, key: 1 });
     }

@@ -7,7 +7,7 @@ use crate::dsp::random::{key, uniform};
 const RATE: f64 = 48_000.0;
 
 /// Loads a body of this many modes, at rest, with its excitation gains set.
-fn body(cells: &mut Cells, law: Law, modes: usize, seed: u64) {
+fn body(cells: &mut Cells, recurrence: Recurrence, modes: usize, seed: u64) {
     let unit = |m: usize, n: u64| f64::from(uniform(key(seed, n), m as u64)) * 0.5 + 0.5;
     let ratios: Vec<f64> = (0..modes).map(|m| 0.5 + 40.0 * unit(m, 0)).collect();
     cells.ratios_mut().flatten().zip(&ratios).for_each(|(to, ratio)| *to = *ratio);
@@ -23,7 +23,7 @@ fn body(cells: &mut Cells, law: Law, modes: usize, seed: u64) {
         };
         rows.map(setup).collect()
     };
-    cells.load(law, RATE, &pans, setup);
+    cells.load(recurrence, RATE, &pans, setup);
     for cell in 0..Cells::count_for(modes) {
         let push = std::array::from_fn(|m| unit(cell * MAX_MODES + m, 3) as f32);
         let gains = ExcitationRows { push, pull: [0.1; MAX_MODES], ..ExcitationRows::NONE };
@@ -58,20 +58,20 @@ fn play(cells: &mut Cells, ticks: usize) -> (Vec<u32>, f64, u64) {
 
 #[test]
 fn cells_that_were_used_give_the_bits_of_new_ones() {
-    for law in [Law::Exact, Law::Classic] {
+    for recurrence in [Recurrence::Exact, Recurrence::Classic] {
         for (count, modes) in [(1, 1), (1, 37), (1, 64), (3, 130), (8, 512)] {
             let mut fresh = cells(count);
-            body(&mut fresh, law, modes, 1);
+            body(&mut fresh, recurrence, modes, 1);
             let expected = play(&mut fresh, 40);
             assert!(expected.0.iter().any(|bits| f32::from_bits(*bits).abs() > 0.1));
             let mut used = cells(count);
-            for (other, seed) in [(Law::Exact, 2), (Law::Classic, 3), (law, 4), (law, 5)] {
+            for (other, seed) in [(Recurrence::Exact, 2), (Recurrence::Classic, 3), (recurrence, 4), (recurrence, 5)] {
                 body(&mut used, other, 64 * count - seed as usize, seed);
                 // End in the middle of a sweep, or at a point where tables are used.
                 play(&mut used, if seed == 5 { 3 } else { 30 });
             }
-            body(&mut used, law, modes, 1);
-            assert!(play(&mut used, 40) == expected, "{law:?} {modes}");
+            body(&mut used, recurrence, modes, 1);
+            assert!(play(&mut used, 40) == expected, "{recurrence:?} {modes}");
         }
     }
 }
@@ -79,14 +79,14 @@ fn cells_that_were_used_give_the_bits_of_new_ones() {
 #[test]
 fn many_cells_are_the_sum_of_each_by_itself() {
     let mut whole = cells(8);
-    body(&mut whole, Law::Exact, 500, 7);
+    body(&mut whole, Recurrence::Exact, 500, 7);
     let (samples, energy, _) = play(&mut whole, 40);
     let mut sum = vec![0.0_f64; samples.len()];
     let mut energies = 0.0;
     for cell in 0..8 {
         // The same modes, but those of the other cells are not excited.
         let mut part = cells(8);
-        body(&mut part, Law::Exact, 500, 7);
+        body(&mut part, Recurrence::Exact, 500, 7);
         let others = (0..8).filter(|other| *other != cell);
         others.for_each(|other| part.set_excitation_gains(other, &ExcitationRows::NONE));
         let (samples, energy, _) = play(&mut part, 40);
@@ -102,7 +102,7 @@ fn many_cells_are_the_sum_of_each_by_itself() {
 #[test]
 fn the_end_of_many_cells_is_when_their_energies_add_up_to_it() {
     let mut whole = cells(4);
-    body(&mut whole, Law::Exact, 256, 9);
+    body(&mut whole, Recurrence::Exact, 256, 9);
     let (_, _, told) = play(&mut whole, 60);
     let mut frames = 0;
     while whole.settle() >= 1e-9 {

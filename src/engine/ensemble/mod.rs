@@ -162,8 +162,8 @@ impl Ensemble {
 
     /// Tells the strikes of notes apart that are struck while they sound ([`VoiceState::strikes`]). To be called before the first
     /// note. Afterwards [`Ensemble::process`] is not real-time safe: it allocates at such strikes and while they act. The output stays the same.
-    pub(crate) fn tell_strikes_apart(&mut self) {
-        self.lender.voices_mut().for_each(|voice| voice.tell_strikes_apart());
+    pub(crate) fn separate_strikes(&mut self) {
+        self.lender.voices_mut().for_each(|voice| voice.separate_strikes());
     }
 
     /// Amplitude ratio at which the channels are mixed, before the limiter.

@@ -157,7 +157,7 @@ impl Synth {
     /// [`Kit::values`]. The effects after the voices change for all notes, within 20 ms.
     ///
     /// Real-time safe if there is room for the kit's sounds ([`Synth::reserve`]) and for its strings and space, if it has
-    /// any ([`Synth::reserve_space`]), and if someone else holds the previous kit ([`Shelf`](crate::sound::Shelf)), so
+    /// any ([`Synth::reserve_space`]), and if someone else holds the previous kit ([`Collector`](crate::sound::Collector)), so
     /// that it is not freed here.
     pub fn set_kit(&mut self, kit: &Arc<Kit>) {
         self.instruments.set_kit(kit, self.clock);

@@ -1,6 +1,5 @@
 //! One voice: the strikes of its note, a bank of modes, and the modulation of their pitch, decay and gain.
 
-mod apart;
 mod bloom;
 mod bowing;
 mod clock;
@@ -12,6 +11,7 @@ mod line;
 pub(super) mod mode_state;
 mod notes;
 mod pitch;
+mod separation;
 mod strike;
 mod tension;
 mod values;
@@ -28,12 +28,12 @@ use crate::dsp::cells::Cells;
 use crate::dsp::fader::Fader;
 use crate::params::Param;
 use crate::patch::ModeTable;
-use apart::Apart;
 use bloom::Bloom;
 use clock::Clock;
 use decay::Decay;
 use energy::Energy;
 use pitch::{Bends, Pitch};
+use separation::Separation;
 use strike::Strike;
 use tension::Tension;
 use values::StruckValues;
@@ -84,7 +84,7 @@ pub(crate) struct SynthVoice {
     /// Whether routes of the patch modulate the level of the bow or of the input.
     may_be_driven: bool,
     /// The strikes told apart, if labels are wanted.
-    apart: Option<Box<Apart>>,
+    separation: Option<Box<Separation>>,
 }
 
 impl SynthVoice {
@@ -115,7 +115,7 @@ impl SynthVoice {
             is_held: false,
             may_move: false,
             may_be_driven: false,
-            apart: None,
+            separation: None,
         }
     }
 
@@ -279,8 +279,8 @@ impl SynthVoice {
     /// `input` is the incoming sound: empty, or one sample for each frame.
     pub(crate) fn render(&mut self, input: &[f32], left: &mut [f32], right: &mut [f32]) {
         let frames = left.len();
-        if let Some(apart) = &mut self.apart {
-            apart.render(&self.strike, &self.bank, frames);
+        if let Some(separation) = &mut self.separation {
+            separation.render(&self.strike, &self.bank, frames);
         }
         let bow = self.strike.bowing.stroke(frames);
         self.fader.mix(self.bank.render(self.strike.drive(frames, input), bow.as_ref(), frames), [left, right]);

@@ -1,7 +1,7 @@
 //! The current state of a voice for displays, and that of its modes for labels.
 
 use super::SynthVoice;
-use super::apart::{Apart, Share};
+use super::separation::{SeparateStrike, Separation};
 use crate::dsp::cells::Cells;
 use crate::engine::note::Note;
 use crate::params::Param;
@@ -21,7 +21,7 @@ pub(crate) struct ModeState {
 /// A strike that overlaps with others, or was made while its voice rang.
 pub(crate) struct StrikeState<'a> {
     voice: &'a SynthVoice,
-    share: &'a Share,
+    share: &'a SeparateStrike,
 }
 
 impl StrikeState<'_> {
@@ -87,19 +87,19 @@ impl SynthVoice {
     }
 
     /// From now on, tells strikes apart. Then strikes on sounding notes allocate, and so does rendering while they act.
-    pub(crate) fn tell_strikes_apart(&mut self) {
-        self.apart = Some(Box::new(Apart::NONE));
+    pub(crate) fn separate_strikes(&mut self) {
+        self.separation = Some(Box::new(Separation::NONE));
     }
 
     /// The strikes that have modes of their own, in their order.
     pub(crate) fn strikes(&self) -> impl Iterator<Item = StrikeState<'_>> {
-        let shares = self.apart.iter().flat_map(|apart| &apart.shares);
+        let shares = self.separation.iter().flat_map(|separation| &separation.strikes);
         shares.map(|share| StrikeState { voice: self, share })
     }
 
     /// Forgets the strikes that no longer act.
     pub(crate) fn forget_ended_strikes(&mut self) {
-        let Self { apart, strike, .. } = self;
-        apart.iter_mut().for_each(|apart| apart.shares.retain(|share| share.is_acting(strike)));
+        let Self { separation, strike, .. } = self;
+        separation.iter_mut().for_each(|separation| separation.strikes.retain(|share| share.is_acting(strike)));
     }
 }

@@ -7,7 +7,7 @@ use super::energy::Energy;
 use super::pitch::Pitch;
 use super::tension::Tension;
 use super::values::{StruckValues, strike_modulators};
-use crate::dsp::bank::Law;
+use crate::dsp::bank::Recurrence;
 use crate::dsp::cells::Cell;
 use crate::dsp::fader::Fader;
 use crate::dsp::mode_bank::{MAX_MODES, ModeRows};
@@ -122,9 +122,9 @@ impl Voice for SynthVoice {
         Pitch::set_ratios(&values, &mut self.bank);
         self.decay.read(&values, &self.controls, &mut self.bank);
 
-        let law = match instrument.knobs.choice::<Coefficients>(Param::Coefficients) {
-            Coefficients::Exact => Law::Exact,
-            Coefficients::Classic => Law::Classic,
+        let recurrence = match instrument.knobs.choice::<Coefficients>(Param::Coefficients) {
+            Coefficients::Exact => Recurrence::Exact,
+            Coefficients::Classic => Recurrence::Classic,
         };
         let (width, spread) = (values.share(Param::Width), unison.position() * values.share(Param::UnisonSpread));
         let (frequency, damping) = (self.pitch.frequency(), self.decay.damping);
@@ -138,13 +138,13 @@ impl Voice for SynthVoice {
             }
             ModeRows { frequency, t60, left, right, len: modes.len() }
         };
-        self.bank.load(law, self.sample_rate, values.modes().as_slice(), setup);
+        self.bank.load(recurrence, self.sample_rate, values.modes().as_slice(), setup);
         self.excite(instrument, note);
-        self.apart.iter_mut().for_each(|apart| apart.begin(note));
+        self.separation.iter_mut().for_each(|separation| separation.begin(note));
     }
 
     fn restrike(&mut self, instrument: &Instrument, note: &Note) {
-        self.apart.iter_mut().for_each(|apart| apart.part(&self.strike, &self.bank));
+        self.separation.iter_mut().for_each(|separation| separation.separate(&self.strike, &self.bank));
         let passed = self.clock.since_control();
         if !self.modulators.are_idle() {
             self.modulators.advance(passed);
@@ -153,13 +153,13 @@ impl Voice for SynthVoice {
         }
         self.slide(Some(instrument), note, note.is_legato);
         self.excite(instrument, note);
-        self.apart.iter_mut().for_each(|apart| apart.add(note, &self.strike, &self.bank));
+        self.separation.iter_mut().for_each(|separation| separation.add(note, &self.strike, &self.bank));
         self.pitch.restart(self.controls.vibrato_rate, passed);
         self.clock.strike();
     }
 
     fn retune(&mut self, instrument: Option<&Instrument>, note: &Note) {
-        self.apart.iter_mut().for_each(|apart| apart.part(&self.strike, &self.bank));
+        self.separation.iter_mut().for_each(|separation| separation.separate(&self.strike, &self.bank));
         self.slide(instrument, note, true);
     }
 

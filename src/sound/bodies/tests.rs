@@ -1,5 +1,6 @@
 //! Tests of properties that all bodies must have.
 
+use super::body::T60_RANGE;
 use super::*;
 use proptest::collection::vec;
 use proptest::prelude::*;

@@ -41,7 +41,7 @@ pub use mode::{BodyMode, CoupledMode, Partial};
 
 use crate::error::{Error, Result};
 use poles::Pair;
-use system::{Law, System};
+use system::{Coupling, System};
 
 /// The joint between two bodies at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,13 +72,13 @@ const RIGID: f64 = 1e40;
 /// [`Error::Value`] for a number that is out of range, and if the poles were not found.
 pub fn joined(first: &[BodyMode], second: &[BodyMode], joint: Joint) -> Result<Vec<CoupledMode>> {
     first.iter().chain(second).try_for_each(BodyMode::check)?;
-    let law = law(first, second, joint)?;
-    if !law.rigid && law.stiffness == 0.0 && law.damping == 0.0 {
+    let coupling = coupling(first, second, joint)?;
+    if !coupling.rigid && coupling.stiffness == 0.0 && coupling.damping == 0.0 {
         return apart(first, second);
     }
     let mut modes = ATTEMPTS
         .iter()
-        .find_map(|(ease, change)| solve(first, second, law.scaled(*change), *ease))
+        .find_map(|(ease, change)| solve(first, second, coupling.scaled(*change), *ease))
         .ok_or_else(|| Error::value("joint", "the poles of the joined bodies were not found: change it a little"))?;
     sort(&mut modes);
     Ok(modes)
@@ -93,8 +93,8 @@ const ATTEMPTS: [(f64, f64); 5] = [(1.0, 1.0), (4.0, 1.0), (0.25, 1.0), (1.0, 1.
 /// Limit of the initial displacement as a share of all amplitudes. With well separated poles it is below 1e−11.
 const AT_REST: f64 = 1e-9;
 
-fn solve(first: &[BodyMode], second: &[BodyMode], law: Law, ease: f64) -> Option<Vec<CoupledMode>> {
-    let (system, mut modes) = System::new(first, second, law);
+fn solve(first: &[BodyMode], second: &[BodyMode], coupling: Coupling, ease: f64) -> Option<Vec<CoupledMode>> {
+    let (system, mut modes) = System::new(first, second, coupling);
     let slowest = system.rate.iter().copied().fold(f64::INFINITY, f64::min);
     for pair in poles::find(&system, start::guesses(&system, ease))? {
         match pair {
@@ -175,8 +175,8 @@ fn sort(modes: &mut [CoupledMode]) {
     });
 }
 
-fn law(first: &[BodyMode], second: &[BodyMode], joint: Joint) -> Result<Law> {
-    let rigid = Law { rigid: true, stiffness: 0.0, damping: 0.0 };
+fn coupling(first: &[BodyMode], second: &[BodyMode], joint: Joint) -> Result<Coupling> {
+    let rigid = Coupling { rigid: true, stiffness: 0.0, damping: 0.0 };
     let Joint::Spring { stiffness, damping } = joint else { return Ok(rigid) };
     for (name, value) in [("stiffness", stiffness), ("damping", damping)] {
         if value.is_nan() || value < 0.0 {
@@ -189,5 +189,5 @@ fn law(first: &[BodyMode], second: &[BodyMode], joint: Joint) -> Result<Law> {
         highest = highest.max(mode.angular_frequency).max(mode.decay_rate);
     }
     let is_soft = stiffness * weight <= RIGID * highest * highest && damping * weight <= RIGID * highest;
-    Ok(if is_soft { Law { rigid: false, stiffness, damping } } else { rigid })
+    Ok(if is_soft { Coupling { rigid: false, stiffness, damping } } else { rigid })
 }

@@ -12,7 +12,7 @@ pub(super) fn guesses(system: &System, ease: f64) -> Vec<Place> {
         guess(system, j, root_in_gap(system, ease, j, gap), gap)
     });
     // A rigid joint removes one degree of freedom.
-    let last = (!system.law.rigid && !system.frequency.is_empty())
+    let last = (!system.coupling.rigid && !system.frequency.is_empty())
         .then(|| guess(system, gaps, root_above(system, ease), f64::INFINITY));
     within.chain(last).collect()
 }
@@ -29,8 +29,12 @@ fn square_gap(system: &System, j: usize, k: usize) -> f64 {
 
 /// The inverse of the joint's stiffness at an undamped frequency with this square; its damping counts as stiffness.
 fn compliance(system: &System, square: f64) -> f64 {
-    let law = &system.law;
-    if law.rigid { 0.0 } else { 1.0 / (law.stiffness * law.stiffness + law.damping * law.damping * square).sqrt() }
+    let coupling = &system.coupling;
+    if coupling.rigid {
+        0.0
+    } else {
+        1.0 / (coupling.stiffness * coupling.stiffness + coupling.damping * coupling.damping * square).sqrt()
+    }
 }
 
 /// The root between two neighbouring frequencies, as a distance above the lower one. The contributions of all other
@@ -96,7 +100,7 @@ fn guess(system: &System, j: usize, above: f64, gap: f64) -> Place {
         }
     }
     let compliance = compliance(system, self::square(system, origin) + shift);
-    damping += 0.5 * system.law.damping * compliance * compliance;
+    damping += 0.5 * system.coupling.damping * compliance * compliance;
     let more = if mass > 0.0 { damping / mass } else { 0.0 };
     system.place(origin, Complex::new(-more, rise))
 }

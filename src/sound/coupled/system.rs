@@ -9,13 +9,13 @@ use super::mode::{BodyMode, CoupledMode};
 
 /// The law of the joint in the form that the equation needs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Law {
+pub(super) struct Coupling {
     pub(super) rigid: bool,
     pub(super) stiffness: f64,
     pub(super) damping: f64,
 }
 
-impl Law {
+impl Coupling {
     /// The joint with stiffness and damping multiplied by `by`.
     pub(super) fn scaled(self, by: f64) -> Self {
         Self { stiffness: self.stiffness * by, damping: self.damping * by, ..self }
@@ -48,7 +48,7 @@ pub(super) struct Place {
 /// The modes that act on each other, in the order of their undamped frequencies.
 #[derive(Debug)]
 pub(super) struct System {
-    pub(super) law: Law,
+    pub(super) coupling: Coupling,
     pub(super) frequency: Vec<f64>,
     pub(super) rate: Vec<f64>,
     pub(super) joint: Vec<f64>,
@@ -87,7 +87,7 @@ const NEGLIGIBLE: f64 = 1e-36;
 
 impl System {
     /// Joins two bodies. Also returns the modes on which the joint has no effect.
-    pub(super) fn new(first: &[BodyMode], second: &[BodyMode], law: Law) -> (Self, Vec<CoupledMode>) {
+    pub(super) fn new(first: &[BodyMode], second: &[BodyMode], coupling: Coupling) -> (Self, Vec<CoupledMode>) {
         let one = first.iter().map(|mode| Loose {
             frequency: mode.angular_frequency,
             rate: mode.decay_rate,
@@ -108,7 +108,8 @@ impl System {
         let largest = modes.iter().fold(0.0, |largest: f64, mode| largest.max(mode.joint.abs()));
         let is_still = |mode: &Loose| {
             let pole = Complex::new(-mode.rate, mode.frequency);
-            let pull = if law.rigid { f64::MAX } else { law.beta(pole).0.norm() * mode.joint.abs() * largest };
+            let pull =
+                if coupling.rigid { f64::MAX } else { coupling.beta(pole).0.norm() * mode.joint.abs() * largest };
             mode.joint.abs() <= NEGLIGIBLE * largest || pull <= NEGLIGIBLE * pole.norm2()
         };
         let (still, mut moved): (Vec<Loose>, Vec<Loose>) = modes.into_iter().partition(is_still);
@@ -116,7 +117,7 @@ impl System {
         moved.sort_by(|a, b| undamped(a).total_cmp(&undamped(b)));
         let free = |mode: Loose| CoupledMode::free(mode.frequency, mode.rate, mode.strike, mode.pickup);
         let system = Self {
-            law,
+            coupling,
             frequency: moved.iter().map(|mode| mode.frequency).collect(),
             rate: moved.iter().map(|mode| mode.rate).collect(),
             joint: moved.iter().map(|mode| mode.joint).collect(),
@@ -154,7 +155,7 @@ impl System {
 
     /// The leading coefficient of `F Π q_k`.
     pub(super) fn leading(&self) -> f64 {
-        if self.law.rigid { self.weight.iter().sum() } else { 1.0 }
+        if self.coupling.rigid { self.weight.iter().sum() } else { 1.0 }
     }
 
     /// The same place, relative to the nearest pole.
@@ -192,8 +193,8 @@ impl System {
             size += term.re.abs() + term.im.abs();
         }
         let (q, derivative) = self.q(place, place.origin);
-        let (beta, beta_slope) = self.law.beta(place.s);
-        let (alpha, weight) = (self.law.alpha(), self.weight[place.origin]);
+        let (beta, beta_slope) = self.coupling.beta(place.s);
+        let (alpha, weight) = (self.coupling.alpha(), self.weight[place.origin]);
         let pull = q * beta;
         let pull_slope = derivative * beta + q.scale(beta_slope);
         Value {
@@ -222,7 +223,7 @@ impl System {
             }
         }
         let twice = if rings { -2.0 } else { -1.0 };
-        let scale = (self.law.beta(place.s).0 * (q * self.value(place).derivative).reciprocal()).scale(twice);
+        let scale = (self.coupling.beta(place.s).0 * (q * self.value(place).derivative).reciprocal()).scale(twice);
         let frequency = if rings { place.s.im } else { 0.0 };
         let pickup = pickup.map(|shape| shape * scale);
         CoupledMode { angular_frequency: frequency, decay_rate: rate, strike, pickup }

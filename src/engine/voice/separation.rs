@@ -6,14 +6,14 @@ use crate::dsp::exciter::Drive;
 use crate::engine::note::Note;
 
 /// A strike, and modes that hear it alone.
-pub(super) struct Share {
+pub(super) struct SeparateStrike {
     pub(super) note: Note,
     /// The number of its blow in the exciter; none if another strike has taken its place there.
     blow: Option<usize>,
     pub(super) modes: Cells,
 }
 
-impl Share {
+impl SeparateStrike {
     /// Whether any of its forces is still to come.
     pub(super) fn is_acting(&self, strike: &Strike) -> bool {
         self.blow.is_some_and(|blow| strike.exciter().is_acting(blow))
@@ -22,27 +22,27 @@ impl Share {
 
 /// The strikes of a voice that overlap with others, or that were made while it rang. A strike on a voice at rest needs no modes of
 /// its own until another one follows, since the voice's modes hear nothing else.
-pub(super) struct Apart {
+pub(super) struct Separation {
     /// The note that was struck last.
     struck: Note,
-    pub(super) shares: Vec<Share>,
+    pub(super) strikes: Vec<SeparateStrike>,
 }
 
-impl Apart {
-    pub(super) const NONE: Self = Self { struck: Note::NONE, shares: Vec::new() };
+impl Separation {
+    pub(super) const NONE: Self = Self { struck: Note::NONE, strikes: Vec::new() };
 
     /// A strike on a voice at rest.
     pub(super) fn begin(&mut self, note: &Note) {
         self.struck = *note;
-        self.shares.clear();
+        self.strikes.clear();
     }
 
     /// Gives the strike in progress, if it is the only one, modes of its own: those of the voice. To be called before the voice
     /// gets another note.
-    pub(super) fn part(&mut self, strike: &Strike, modes: &Cells) {
-        if strike.is_active() && !self.shares.iter().any(|share| share.is_acting(strike)) {
+    pub(super) fn separate(&mut self, strike: &Strike, modes: &Cells) {
+        if strike.is_active() && !self.strikes.iter().any(|share| share.is_acting(strike)) {
             let blow = Some(strike.exciter().newest());
-            self.shares.push(Share { note: self.struck, blow, modes: modes.clone() });
+            self.strikes.push(SeparateStrike { note: self.struck, blow, modes: modes.clone() });
         }
     }
 
@@ -50,13 +50,13 @@ impl Apart {
     pub(super) fn add(&mut self, note: &Note, strike: &Strike, modes: &Cells) {
         self.struck = *note;
         let blow = Some(strike.exciter().newest());
-        self.shares.iter_mut().filter(|share| share.blow == blow).for_each(|share| share.blow = None);
-        self.shares.push(Share { note: *note, blow, modes: modes.at_rest() });
+        self.strikes.iter_mut().filter(|share| share.blow == blow).for_each(|share| share.blow = None);
+        self.strikes.push(SeparateStrike { note: *note, blow, modes: modes.at_rest() });
     }
 
     /// Renders the next frames of each strike's own modes. The voice's modes are about to render the same frames.
     pub(super) fn render(&mut self, strike: &Strike, modes: &Cells, frames: usize) {
-        for share in &mut self.shares {
+        for share in &mut self.strikes {
             let mut drive = Drive::NONE;
             if let Some(blow) = share.blow {
                 strike.exciter().only(blow).fill(frames, &mut drive);
