@@ -163,7 +163,8 @@ pub fn from_onset(samples: &[f32]) -> &[f32] {
     &samples[onset(samples)..]
 }
 
-/// Distance in dB of two sounds at [`RATE`], each from its onset on: see [`LogMel::distance`].
+/// Distance in dB of two sounds at [`RATE`], each from its onset on: the mean difference over all bands and windows in which at
+/// least one of them is within 80 dB of the loudest band of both. 0 if both are silent.
 pub fn distance(first: &[f32], second: &[f32]) -> f64 {
     let mut bands = MelBands::new();
     let [first, second] = [first, second].map(|samples| bands.measure(from_onset(samples)));
