@@ -164,7 +164,7 @@ pub fn from_onset(samples: &[f32]) -> &[f32] {
 }
 
 /// Distance in dB of two sounds at [`RATE`], each from its onset on: the mean difference over all bands and windows in which at
-/// least one of them is within 80 dB of the loudest band of both. 0 if both are silent.
+/// least one of them is within 60 dB of the loudest band of both. 0 if both are silent.
 pub fn distance(first: &[f32], second: &[f32]) -> f64 {
     let mut bands = MelBands::new();
     let [first, second] = [first, second].map(|samples| bands.measure(from_onset(samples)));
