@@ -26,8 +26,8 @@ fn midi_files() {
         ("noise", noise.clone(), "not a MIDI file: expected a Standard MIDI File"),
         (
             "framed",
-            [b"MThd\0\0\0\x06\0\x01\0\x01\0\x60MTrk\0\0\x13\x88".to_vec(), noise].concat(),
-            "track 1, bar 4751, beat 3 (tick 1824230, byte 26): expected a data byte of at most 0x7f",
+            [b"MThd\0\0\0\x06\0\x01\0\x01\0\x60MTrk\0\0\x13\x8d\x83\x60\x90\x3c\x40".to_vec(), noise].concat(),
+            "track 1, bar 2, beat 2 (tick 480, byte 27): expected a data byte of at most 0x7f",
         ),
         ("endless", endless, "bytes do not fit"),
     ] {
