@@ -20,6 +20,11 @@ pub(crate) fn all() -> Vec<Score> {
     paths.iter().map(|path| song(path)).collect()
 }
 
+/// Whether a case is a song that takes a good part of a minute.
+pub(crate) fn is_long(case: &Score) -> bool {
+    ["song-kits", "song-suite"].contains(&case.name.as_str())
+}
+
 fn song(path: &Path) -> Score {
     let stem = path.file_stem().and_then(|stem| stem.to_str()).expect("songs have plain names");
     let bytes = std::fs::read(path).expect("a song can be read");

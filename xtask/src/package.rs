@@ -9,8 +9,9 @@ use std::process::Command;
 pub(crate) fn test() -> Result<Count, String> {
     let python = root().join("target/python/bin/python");
     let folder = root().join("src/python");
-    // With the features that the tests of the other packages have, so that the library is not compiled again.
-    let mut build = cargo("build --workspace --all-features");
+    // With the features that the tests of the other packages have, and those of what they alone need, so that nothing is compiled
+    // again.
+    let mut build = cargo("build --workspace --all-features --lib --bins --tests");
     run_to_end(build.env("PYO3_BUILD_EXTENSION_MODULE", "1"), "the package does not build")?;
     let (library, module) = (root().join("target/debug/lib_sprung.so"), folder.join("sprung/_sprung.abi3.so"));
     std::fs::copy(&library, &module).map_err(|error| format!("{}: {error}", library.display()))?;

@@ -195,6 +195,7 @@ fn pictures_are_small() {
 }
 
 #[test]
+#[ignore = "takes half a minute"]
 fn pictures_of_browser_and_manual_in_every_theme_are_as_accepted() {
     for theme in Theme::ALL {
         for (page, opens) in [("browser", "Browse"), ("manual", "?")] {
