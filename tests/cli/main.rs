@@ -12,6 +12,7 @@ mod interrupts;
 mod lab;
 mod listings;
 mod messages;
+mod mpe;
 mod outputs;
 #[cfg(unix)]
 mod recipes;

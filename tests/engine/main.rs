@@ -19,7 +19,6 @@ mod kits;
 mod limiter;
 mod modulation;
 mod motion;
-mod mpe;
 mod nudges;
 mod pair_reference;
 mod pool;
