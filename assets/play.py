@@ -2,7 +2,7 @@
 """Draws assets/play.png: `sprung play` in a terminal, while a chord of bells rings.
 
     sudo apt-get install tmux jackd2 fonts-hack && pip install pillow
-    cargo build --release --features realtime && python3 assets/play.py
+    cargo build --release --features play && python3 assets/play.py
 
 The sound goes to JACK's dummy driver, so no sound device is needed. tmux is the terminal; what it shows is painted with its colours.
 """

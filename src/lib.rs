@@ -9,7 +9,8 @@
 //! | [`params`], [`patch`], [`preset`] | the parameters, a set of their values with modes and routes, and its file |
 //! | [`sound`] | kits, bodies, and the tuning of the keys, also by Scala's files |
 //! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
-//! | [`io`] | songs, and files that are written whole or not at all; MIDI files in (feature `midi`) and WAV files out (feature `render`), sound files in (features `recordings` and `codecs`) |
+//! | [`io`] | songs, MIDI files, and files that are written whole or not at all; WAV files out (feature `render`), sound files in (feature `fit`) |
+//! | [`manual`] | the pages of the manual |
 //! | `render` | the offline renderer (feature `render`) |
 //! | `request` | what to render and how, under the option names that the command, batches and Python share (feature
 //! `batch`) |
@@ -17,7 +18,7 @@
 //! | `analysis` | what sound is measured with: the modes of a recorded strike, differences, spectra (feature `fit`), and figures of them (feature `analysis`) |
 //! | `lab` | methods that integrate a mass on a spring, compared with the exact motion and with the oscillator (feature
 //! `lab`) |
-//! | `realtime` | sound devices and MIDI ports (feature `live`), and a terminal to play from (feature `realtime`) |
+//! | `realtime` | sound devices and MIDI ports (feature `live`) |
 //!
 //! # Notes and songs
 //!
@@ -73,10 +74,7 @@
 //! ```
 
 // Some of the crate’s own functions serve certain features only. Where all features are on, dead code is found.
-#![cfg_attr(
-    not(all(feature = "analysis", feature = "batch", feature = "lab", feature = "live", feature = "realtime")),
-    allow(dead_code, unused_imports)
-)]
+#![cfg_attr(not(all(feature = "batch", feature = "lab", feature = "live")), allow(dead_code, unused_imports))]
 
 #[cfg(feature = "fit")]
 pub mod analysis;
@@ -85,11 +83,12 @@ pub mod batch;
 pub mod dsp;
 pub mod engine;
 pub mod error;
-#[cfg(feature = "figures")]
+#[cfg(feature = "analysis")]
 pub mod figure;
 pub mod io;
 #[cfg(feature = "lab")]
 pub mod lab;
+pub mod manual;
 pub mod params;
 pub mod patch;
 pub mod preset;

@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn jobs_have_the_options_of_render() {
-        let command = crate::cli::Cli::command();
+        let command = crate::Cli::command();
         let render = command.find_subcommand("render").unwrap();
         let own = ["block", "figure", "force", "help", "json", "output", "threads"];
         let options: BTreeSet<&str> = render.get_arguments().map(|arg| arg.get_id().as_str()).collect();

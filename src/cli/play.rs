@@ -3,14 +3,14 @@
 use super::song::SongArgs;
 use super::sound::SoundArgs;
 use super::terminal::{complain, complain_lines, print, warn};
-use super::{completion, interrupt, quantity};
+use super::{completion, interrupt, quantity, view};
 use sprung::engine::telemetry::Load;
 use sprung::io::{Inputs, Output, Target};
 use sprung::preset::Playable;
 use sprung::preset::library::Library;
 use sprung::realtime::{
     Choice, Found, KitSender, LiveInputs, LiveSender, MidiIn, Player, Recording, Session, Setup, Status, device,
-    midi_ports, view,
+    midi_ports,
 };
 use sprung::render::BLOCKS;
 use sprung::request::Sounds;

@@ -1,11 +1,9 @@
 //! Files: reads MIDI songs and recordings, writes WAV and FLAC sound, and replaces output files only when they are complete.
 
-#[cfg(feature = "midi")]
 mod bars;
 #[cfg(feature = "batch")]
 pub mod flac;
 pub mod inputs;
-#[cfg(feature = "midi")]
 pub mod midi;
 pub mod output;
 mod quantise;
@@ -15,10 +13,9 @@ mod riff;
 mod room;
 pub mod song;
 mod song_cursor;
-#[cfg(feature = "recordings")]
+#[cfg(feature = "fit")]
 pub mod sound_file;
 pub mod target;
-#[cfg(feature = "midi")]
 mod tempo;
 mod temporary;
 #[cfg(feature = "render")]

@@ -7,7 +7,7 @@
 //! | [`method`], [`amplification`] | the methods, one file each; the matrix of one step |
 //! | [`trajectory`] | a method run over a period of time, and its error |
 //! | [`comparison`], [`convergence`], [`stability`], [`pitch`], [`sound`] | measured behaviour: errors, orders, limits, tuning, audio |
-//! | `figure`, `animation`, `report` | figures, animations and an HTML page (feature `figures`) |
+//! | [`figure`], [`animation`], [`report`] | figures, animations and an HTML page |
 //!
 //! All arithmetic is in `f64`; nothing here is real-time safe, and the instrument does not depend on it.
 //!
@@ -22,18 +22,15 @@
 //! ```
 
 pub mod amplification;
-#[cfg(feature = "figures")]
 pub mod animation;
 pub mod closed_form;
 pub mod comparison;
 pub mod convergence;
 pub mod energy;
-#[cfg(feature = "figures")]
 pub mod figure;
 pub mod method;
 pub mod pitch;
 pub mod reference;
-#[cfg(feature = "figures")]
 pub mod report;
 pub mod sound;
 pub mod stability;

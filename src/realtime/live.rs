@@ -70,7 +70,7 @@ impl LiveSender {
     }
 
     /// Releases every note and pedal on every channel.
-    pub(crate) fn release_all(&mut self) {
+    pub fn release_all(&mut self) {
         for channel in 0..16 {
             for controller in [SUSTAIN, SOSTENUTO, ALL_NOTES_OFF] {
                 self.send_now(channel, EventKind::Control { controller, value: 0.0 });
@@ -79,7 +79,7 @@ impl LiveSender {
     }
 
     /// Fades out everything within milliseconds.
-    pub(crate) fn silence_all(&mut self) {
+    pub fn silence_all(&mut self) {
         for channel in 0..16 {
             self.send_now(channel, EventKind::Control { controller: ALL_SOUND_OFF, value: 0.0 });
         }

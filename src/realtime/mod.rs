@@ -1,4 +1,4 @@
-//! Playing live: sound devices, MIDI ports, a recorder, and a terminal to play from.
+//! Playing live: sound devices, MIDI ports and a recorder.
 //!
 //! The audio thread owns the [`Player`], or another [`Source`]. Everything that it receives (live events, kits) and
 //! sends (recording, status) goes through queues of fixed size and atomics, so that it never allocates, locks or waits.
@@ -20,8 +20,6 @@ pub mod recorder;
 pub mod session;
 pub mod status;
 pub mod stream;
-#[cfg(feature = "realtime")]
-pub mod view;
 
 pub use block_clock::{BlockClock, Moment, Stamp};
 pub use device::{Choice, Found};

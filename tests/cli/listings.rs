@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 
 /// The rows of the manual's tables of parameters: the page, the parameter's id, and the cell with its range and default.
 fn rows_of_the_manual() -> Vec<(String, String, String)> {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/manual");
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/manual");
     let mut rows = Vec::new();
     for page in std::fs::read_dir(folder).unwrap() {
         let path = page.unwrap().path();

@@ -69,7 +69,7 @@ fn rates_are_read_with_their_units() {
     sandbox.succeeds("render --note 60 --length 0.01 --tail none --gain-db -6dB --force -o x.wav");
 }
 
-#[cfg(not(feature = "realtime"))]
+#[cfg(not(feature = "play"))]
 #[test]
 fn a_build_that_cannot_play_says_so() {
     let sandbox = Sandbox::new();

@@ -7,7 +7,7 @@ use std::process::Command;
 /// Builds command and plugin for release, and prints the table that `benches/batch.py` makes with them.
 pub(crate) fn run(sounds: u32) -> Result<(), String> {
     python::install()?;
-    run_to_end(&mut cargo("build --release --package sprung --bin sprung"), "cargo build")?;
+    run_to_end(&mut cargo("build --release --package sprung-cli"), "cargo build")?;
     let plugin = bundle::run(true)?.join(bundle::Format::Vst3.file_name());
     let target = root().join("target");
     let mut table = Command::new(target.join("python/bin/python"));

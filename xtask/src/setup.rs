@@ -57,19 +57,19 @@ const REQUIREMENTS: &[Requirement] = &[
     Requirement {
         probe: Probe::Program("pkg-config"),
         package: "pkg-config",
-        why: "finds the sound libraries that the feature realtime is built with",
+        why: "finds the sound libraries that `sprung play` and the program are built with",
         suite: Suite::Commit,
     },
     Requirement {
         probe: Probe::Library("alsa"),
         package: "libasound2-dev",
-        why: "sound cards and MIDI ports, for the feature realtime",
+        why: "sound cards and MIDI ports, for `sprung play` and the program",
         suite: Suite::Commit,
     },
     Requirement {
         probe: Probe::Library("jack"),
         package: "libjack-jackd2-dev",
-        why: "JACK servers, for the feature realtime",
+        why: "JACK servers, for `sprung play` and the program",
         suite: Suite::Commit,
     },
     Requirement {

@@ -49,7 +49,7 @@ pub(crate) const LONG: &[Step] = &[
     check(
         "features",
         &[
-            "hack clippy --package sprung --each-feature --all-targets -- -D warnings",
+            "hack clippy --package sprung --package sprung-cli --each-feature --all-targets -- -D warnings",
             "clippy --package xtask --all-targets -- -D warnings",
             "clippy --manifest-path plugin/Cargo.toml -- -D warnings",
         ],

@@ -1,10 +1,10 @@
 //! `sprung presets audition`: renders the factory's sounds, and makes a page that plays and shows them.
 
 use super::select::Select;
-use crate::cli::figure;
-use crate::cli::interrupt;
-use crate::cli::progress::Bar;
-use crate::cli::terminal::counted;
+use crate::figure;
+use crate::interrupt;
+use crate::progress::Bar;
+use crate::terminal::counted;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use sprung::analysis::figure::sound::modes_of;
 use sprung::analysis::measures::preset::{Measure, measure};

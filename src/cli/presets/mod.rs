@@ -4,10 +4,10 @@ mod audition;
 mod list;
 mod select;
 
-use crate::cli::completion;
-use crate::cli::figure;
-use crate::cli::recording::FigureArgs;
-use crate::cli::terminal::{complain, print};
+use crate::completion;
+use crate::figure;
+use crate::recording::FigureArgs;
+use crate::terminal::{complain, print};
 use clap::Subcommand;
 use clap_complete::ArgValueCompleter;
 use sprung::analysis::figure::sound::modes_of;
@@ -21,7 +21,7 @@ use sprung::{Error, Result};
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
-pub(in crate::cli) const EXAMPLES: &str = "\
+pub(crate) const EXAMPLES: &str = "\
 Examples:
   sprung presets list --family mallet
   sprung presets list --gm
@@ -32,7 +32,7 @@ Examples:
 
 #[derive(clap::Args)]
 #[command(arg_required_else_help = true)]
-pub(in crate::cli) struct Args {
+pub(crate) struct Args {
     #[command(subcommand)]
     action: Action,
 }
@@ -59,7 +59,7 @@ enum Action {
     },
 }
 
-pub(in crate::cli) fn run(args: &Args) -> Result<()> {
+pub(crate) fn run(args: &Args) -> Result<()> {
     match &args.action {
         Action::List(args) => print(&list::list(args)),
         Action::Audition(args) => audition::run(args),

@@ -1,6 +1,6 @@
 //! Selects sounds of the factory or of the user for a command.
 
-use crate::cli::terminal::warn;
+use crate::terminal::warn;
 use clap::builder::PossibleValuesParser;
 use sprung::preset::Family;
 use sprung::preset::catalogue::{Catalogue, Listed};

@@ -1,6 +1,6 @@
 //! The figure of a rendering: waveform, spectrogram, and the modes of a single note.
 
-use crate::cli::figure::drawn;
+use crate::figure::drawn;
 use sprung::Result;
 use sprung::analysis::figure::sound::{DrawnMode, modes_of};
 use sprung::params::Param;

@@ -1,6 +1,6 @@
 //! The report that `sprung render` prints.
 
-use crate::cli::terminal::{complain, complain_lines, counted, print};
+use crate::terminal::{complain, complain_lines, counted, print};
 use serde_json::json;
 use sprung::Result;
 use sprung::io::{SampleFormat, Target};

@@ -1,6 +1,5 @@
 //! Reads sound files: WAV of every kind, and with the feature `codecs` AIFF, FLAC, Ogg Vorbis and MP3.
 
-#[cfg(feature = "codecs")]
 mod codecs;
 mod recording;
 mod resample;
@@ -32,7 +31,7 @@ pub fn read(mut file: File, name: &str) -> Result<Recording> {
     file.seek(SeekFrom::Start(0)).map_err(failed)?;
     let recording = match Format::of(&magic) {
         Some(Format::Wav) => wav::read(file, name),
-        Some(Format::Coded(format)) => coded(file, name, format),
+        Some(Format::Coded(format)) => codecs::read(file, name, format),
         None => Err(Error::format(name, "this is not a sound file: expected WAV, AIFF, FLAC, Ogg Vorbis or MP3")),
     }?;
     if recording.frames() == 0 {
@@ -40,18 +39,6 @@ pub fn read(mut file: File, name: &str) -> Result<Recording> {
     }
     recording.check_layout(name)?;
     Ok(recording)
-}
-
-#[cfg(feature = "codecs")]
-fn coded(file: File, name: &str, format: &str) -> Result<Recording> {
-    codecs::read(file, name, format)
-}
-
-#[cfg(not(feature = "codecs"))]
-fn coded(_: File, name: &str, format: &str) -> Result<Recording> {
-    let message =
-        format!("this sprung was built without {format}: expected a WAV, or one built with ‘--features codecs’");
-    Err(Error::format(name, message))
 }
 
 /// The format that the first bytes of a file indicate.

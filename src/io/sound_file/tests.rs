@@ -140,7 +140,6 @@ fn rates_and_channels_that_nothing_can_work_on_are_refused() {
 }
 
 /// Replaces the checksum of an Ogg file's first page, which is its first 58 bytes.
-#[cfg(feature = "codecs")]
 fn seal(ogg: &mut [u8]) {
     ogg[22..26].fill(0);
     let add = |sum: u32, byte: &u8| {
@@ -151,7 +150,6 @@ fn seal(ogg: &mut [u8]) {
     ogg[22..26].copy_from_slice(&sum.to_le_bytes());
 }
 
-#[cfg(feature = "codecs")]
 #[test]
 fn rates_of_coded_files_are_checked_too() {
     // MP3 has only rates from 8 to 48 kHz. An AIFF has its rate as an 80-bit float.
@@ -198,7 +196,6 @@ fn samples_that_are_not_numbers_are_named() {
 
 /// Largest difference from a sine of 440 Hz at half of `gain` on the left, and of 880 Hz at a quarter on the right,
 /// beginning at frame `start`. The ends are left out, since lossy coders are inaccurate there.
-#[cfg(feature = "codecs")]
 fn error(found: &Recording, start: usize, gain: f64) -> f64 {
     let sine = |frequency: f64, n: usize| libm::sin(std::f64::consts::TAU * frequency * n as f64 / 22_050.0);
     let frames = 400..1800;
@@ -209,7 +206,6 @@ fn error(found: &Recording, start: usize, gain: f64) -> f64 {
     frames.map(error).fold(0.0, f64::max)
 }
 
-#[cfg(feature = "codecs")]
 #[test]
 fn coded_files_hold_the_same_sound() {
     // LAME, which coded the MP3, scales the signal to 95 % as a guard against clipping.

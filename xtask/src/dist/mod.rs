@@ -64,7 +64,7 @@ fn stage(folder: &Path, no_plugin: bool) -> Result<PathBuf, String> {
     let name = format!("sprung-{}-{}-{}", env!("CARGO_PKG_VERSION"), std::env::consts::ARCH, std::env::consts::OS);
     let stage = folder.join(name);
     // Debug symbols are most of the command's size.
-    let build = "rustc --release --package sprung --bin sprung -- -C strip=symbols";
+    let build = "rustc --release --package sprung-cli --bin sprung -- -C strip=symbols";
     run_to_end(&mut cargo(build), "the command does not build")?;
     let command = root().join("target/release").join(format!("sprung{}", std::env::consts::EXE_SUFFIX));
     symbols::check(&command)?;
@@ -81,7 +81,7 @@ fn stage(folder: &Path, no_plugin: bool) -> Result<PathBuf, String> {
         copy(&root().join(file), &stage.join(file))?;
     }
     copy(&root().join("assets/manual"), &stage.join("manual"))?;
-    let mut manifests = vec!["Cargo.toml"];
+    let mut manifests = vec!["src/cli/Cargo.toml"];
     if !no_plugin {
         let bundles = bundle::run(true)?;
         for format in bundle::Format::ALL {
@@ -128,7 +128,16 @@ fn debian_package(folder: &Path) -> Result<Made, String> {
         ));
     }
     let mut command = Command::new(&program);
-    command.args(["deb", "--no-build", "--no-strip", "--maintainer", &maintainer, "--output"]);
+    command.args([
+        "deb",
+        "--no-build",
+        "--no-strip",
+        "--package",
+        "sprung-cli",
+        "--maintainer",
+        &maintainer,
+        "--output",
+    ]);
     command.arg(folder).current_dir(root());
     run_to_end(&mut command, "cargo-deb")?;
     made_by("cargo-deb", folder, "deb")
@@ -176,9 +185,12 @@ fn made_by(tool: &str, folder: &Path, ending: &str) -> Result<Made, String> {
 
 /// Packs the crate as for crates.io and builds it from the package, without publishing anything.
 fn package_for_crates_io() -> Result<(), String> {
-    run_to_end(&mut cargo("publish --dry-run --allow-dirty --package sprung"), "cargo publish --dry-run")?;
+    run_to_end(
+        &mut cargo("publish --dry-run --allow-dirty --package sprung --package sprung-cli"),
+        "cargo publish --dry-run",
+    )?;
     // docs.rs builds with these features, as the metadata in Cargo.toml say.
-    let mut docs = cargo("doc --package sprung --no-deps --no-default-features --features batch,codecs,lab");
+    let mut docs = cargo("doc --package sprung --no-deps --features batch,lab");
     run_to_end(docs.env("RUSTDOCFLAGS", "-D warnings"), "the documentation")
 }
 

@@ -140,7 +140,7 @@ impl Pages {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::editor::manual::text::PAGES;
+    use sprung::manual::PAGES;
 
     #[test]
     fn every_page_has_a_page_of_the_manual() {

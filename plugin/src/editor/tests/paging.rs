@@ -95,7 +95,7 @@ fn every_page_of_the_manual_can_be_shown() {
         stage.harness.get_by_role_and_label(Role::Tab, "?").click();
         stage.harness.run_steps(3);
         // A letter that no font has would panic here.
-        for (name, _) in crate::editor::manual::text::PAGES {
+        for (name, _) in sprung::manual::PAGES {
             stage.harness.get_by_label(&format!("Manual: {name}")).click();
             stage.harness.run_steps(2);
         }

@@ -12,16 +12,16 @@ mod saving;
 #[cfg(test)]
 mod tests;
 
-use crate::error::{Error, Result};
 use app::App;
 use ratatui::crossterm::event::{
     self, DisableMouseCapture, EnableMouseCapture, Event, KeyboardEnhancementFlags, PopKeyboardEnhancementFlags,
 };
 use ratatui::crossterm::{event::PushKeyboardEnhancementFlags, execute, terminal};
+use sprung::error::{Error, Result};
 use std::io::stdout;
 use std::time::{Duration, Instant};
 
-pub use desk::{Desk, MakeKit};
+pub(crate) use desk::{Desk, MakeKit};
 
 /// Time between two frames of the screen. A computer key may wait this long for effects other than its note.
 const FRAME: Duration = Duration::from_millis(33);
@@ -31,7 +31,7 @@ const FRAME: Duration = Duration::from_millis(33);
 ///
 /// # Errors
 /// [`Error::Io`] if the terminal cannot be used.
-pub fn run(desk: Desk, mut stop: impl FnMut() -> bool, mut poll: impl FnMut() -> Vec<String>) -> Result<()> {
+pub(crate) fn run(desk: Desk, mut stop: impl FnMut() -> bool, mut poll: impl FnMut() -> Vec<String>) -> Result<()> {
     let failed = |source| Error::io("terminal", source);
     let mut app = App::new(desk);
     let mut screen = ratatui::try_init().map_err(failed)?;

@@ -1,10 +1,10 @@
 //! Draws the masses on their springs.
 
-use crate::engine::Snapshot;
-use crate::units::db_from_gain;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Style};
+use sprung::engine::Snapshot;
+use sprung::units::db_from_gain;
 
 /// Energy in dB at which a mass is drawn darkest.
 const DARKEST: f64 = -60.0;

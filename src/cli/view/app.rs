@@ -3,15 +3,15 @@
 use super::desk::{Desk, MakeKit};
 use super::keyboard::Keyboard;
 use super::layout::Layout;
-use crate::engine::telemetry::Load;
-use crate::engine::{EventKind, Snapshot};
-use crate::params::{PARAMS, ParamInfo, Values};
-use crate::preset::catalogue::{Catalogue, Listed};
-use crate::preset::library::Library;
-use crate::realtime::{KitSender, Status};
-use crate::sound::Kit;
-use crate::text::printable;
 use ratatui::layout::Rect;
+use sprung::engine::telemetry::Load;
+use sprung::engine::{EventKind, Snapshot};
+use sprung::params::{PARAMS, ParamInfo, Values};
+use sprung::preset::catalogue::{Catalogue, Listed};
+use sprung::preset::library::Library;
+use sprung::realtime::{KitSender, Status};
+use sprung::sound::Kit;
+use sprung::text::printable;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 

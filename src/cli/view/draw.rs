@@ -4,12 +4,12 @@ use super::app::{App, Typing};
 use super::keyboard::character;
 use super::layout::{self, Layout, is_black};
 use super::{lists, masses};
-use crate::units::db_from_gain;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout as Split, Rect};
 use ratatui::style::{Color, Style, Stylize};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Clear, Paragraph};
+use sprung::units::db_from_gain;
 
 /// Lowest level of a meter in dB.
 const LOWEST: f64 = -48.0;
@@ -120,7 +120,7 @@ fn keys(app: &App, frame: &mut Frame, area: Rect) {
 fn foot(app: &App, frame: &mut Frame, area: Rect) {
     let hint = match &app.typing {
         Typing::Nothing => {
-            let name = crate::units::note_name(app.keyboard.lowest());
+            let name = sprung::units::note_name(app.keyboard.lowest());
             format!("z = {name}  velocity {}  ? help  Tab list  / search  Ctrl-C end", app.keyboard.velocity)
         }
         Typing::Search => "type to search, Enter to keep it, Esc to see all".to_owned(),

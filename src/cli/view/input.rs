@@ -2,11 +2,11 @@
 
 use super::app::{App, List, Press, Typing};
 use super::layout::key_at;
-use crate::preset::Playable;
 use ratatui::crossterm::event::{
     KeyCode, KeyEvent, KeyEventKind, KeyModifiers, MouseButton, MouseEvent, MouseEventKind,
 };
 use ratatui::layout::Position;
+use sprung::preset::Playable;
 use std::time::Instant;
 
 impl App {

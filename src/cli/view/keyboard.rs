@@ -1,7 +1,7 @@
 //! The computer's keyboard and the mouse as a piano.
 
-use crate::engine::EventKind;
-use crate::realtime::LiveSender;
+use sprung::engine::EventKind;
+use sprung::realtime::LiveSender;
 use std::time::{Duration, Instant};
 
 /// The lower and the upper row of keys, an octave apart, in semitones above the lower C.

@@ -1,13 +1,13 @@
 //! Draws the list of presets and the list of parameters.
 
 use super::app::{App, List, Typing};
-use crate::preset::catalogue::Listed;
-use crate::text::printable;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style, Stylize};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, List as Rows, ListState};
+use sprung::preset::catalogue::Listed;
+use sprung::text::printable;
 use std::sync::Arc;
 
 /// Draws the list that is shown, with its search text in the title.
@@ -41,7 +41,7 @@ fn sounds(app: &App) -> Vec<Line<'static>> {
 }
 
 fn parameters(app: &App, width: usize) -> Vec<Line<'static>> {
-    let row = |(index, info): (usize, &'static crate::params::ParamInfo)| {
+    let row = |(index, info): (usize, &'static sprung::params::ParamInfo)| {
         let current = app.playing().values.get(info.param);
         let value = match &app.typing {
             Typing::Value(text) if app.selected() == Some(index) => format!("{text}▏"),

@@ -1,4 +1,4 @@
-//! The command line. Each subcommand has a file of its own.
+//! The command `sprung`. Each subcommand has a file of its own.
 
 mod analyze;
 mod batch;
@@ -11,7 +11,7 @@ mod lab;
 mod man;
 mod manual;
 mod parameters;
-#[cfg(feature = "realtime")]
+#[cfg(feature = "play")]
 mod play;
 mod presets;
 mod progress;
@@ -22,6 +22,8 @@ mod sound;
 mod terminal;
 mod tuning;
 mod usage;
+#[cfg(feature = "play")]
+mod view;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use interrupt::INTERRUPTED;
@@ -68,11 +70,11 @@ enum Command {
     #[command(after_help = batch::EXAMPLES)]
     Batch(batch::Args),
     /// Play live: a MIDI file, a keyboard, or the terminal
-    #[cfg(feature = "realtime")]
+    #[cfg(feature = "play")]
     #[command(after_help = play::EXAMPLES)]
     Play(Box<play::Args>),
     /// Play live (not in this build)
-    #[cfg(not(feature = "realtime"))]
+    #[cfg(not(feature = "play"))]
     #[command(hide = true, disable_help_flag = true)]
     Play {
         /// Whatever `play` would take
@@ -108,7 +110,7 @@ enum Command {
     Man(man::Args),
 }
 
-pub(crate) fn run() -> ExitCode {
+fn main() -> ExitCode {
     match completion::answer(Cli::command) {
         Ok(true) => return finish(checked(std::io::stdout().flush())),
         Ok(false) => {}
@@ -129,12 +131,12 @@ pub(crate) fn run() -> ExitCode {
 fn execute(command: &Command) -> Result<()> {
     match command {
         Command::Render(args) => render::run(args),
-        #[cfg(feature = "realtime")]
+        #[cfg(feature = "play")]
         Command::Play(args) => play::run(args),
-        #[cfg(not(feature = "realtime"))]
+        #[cfg(not(feature = "play"))]
         Command::Play { .. } => Err(sprung::Error::value(
             "play",
-            "this sprung was built without sound devices: expected one built with ‘cargo build --features realtime’; \
+            "this sprung was built without sound devices: expected one built with ‘cargo build --features play’; \
              ‘sprung render’ writes a file",
         )),
         Command::Presets(args) => presets::run(args),
@@ -189,7 +191,7 @@ mod tests {
             batch::EXAMPLES,
             presets::EXAMPLES,
             parameters::EXAMPLES,
-            #[cfg(feature = "realtime")]
+            #[cfg(feature = "play")]
             play::EXAMPLES,
             analyze::EXAMPLES,
             fit::EXAMPLES,

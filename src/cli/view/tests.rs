@@ -2,15 +2,15 @@
 
 use super::app::{App, List, Typing};
 use super::{Desk, draw};
-use crate::params::Param;
-use crate::preset::library::Library;
-use crate::preset::{KitPreset, Playable, Preset};
-use crate::realtime::{LiveInputs, Moment, Player, Setup, Source, Status};
-use crate::sound::Tuning;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::Rect;
+use sprung::params::Param;
+use sprung::preset::library::Library;
+use sprung::preset::{KitPreset, Playable, Preset};
+use sprung::realtime::{LiveInputs, Moment, Player, Setup, Source, Status};
+use sprung::sound::Tuning;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 

@@ -1,7 +1,0 @@
-//! The command `sprung`.
-
-mod cli;
-
-fn main() -> std::process::ExitCode {
-    cli::run()
-}
