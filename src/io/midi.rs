@@ -3,6 +3,7 @@
 mod container;
 mod fault;
 mod reader;
+mod simultaneous;
 mod system_exclusive;
 
 use super::song::{Song, SongEvent};
@@ -54,8 +55,10 @@ impl Song {
     }
 
     /// As [`Song::parse`], but repairs known faults, and returns a description of each. Running status continues after
-    /// a meta or SysEx event; invalid meta events and tempos of 0 are ignored; a file that is cut off is read up to its
-    /// end; wrong sizes and track counts are replaced by the real ones.
+    /// a meta or SysEx event; data bytes above 127 are taken as 127 where they are no key or program; messages of a MIDI
+    /// cable, invalid meta events and tempos of 0 are ignored; a file that is cut off is read up to its end; wrong sizes,
+    /// track counts and types are replaced by the real ones, and what stands between tracks is skipped. Where nothing can
+    /// be made of a track, its rest is left out.
     ///
     /// # Errors
     /// [`Error::Format`] for all other faults.
@@ -91,6 +94,7 @@ fn parse(bytes: &[u8], lenient: bool) -> Result<(Song, Vec<String>), String> {
     let told = tempos.iter().map(|(tick, tempo)| (*tick, 0, EventKind::Tempo(beats_per_minute(*tempo))));
     events.splice(..0, told);
     events.sort_by_key(|(tick, ..)| *tick);
+    simultaneous::release_before_strike(&mut events);
     let map = TempoMap::new(header.timing, &tempos)?;
     let timed = |(tick, channel, kind)| SongEvent { seconds: map.seconds(tick), channel, kind };
     Ok((Song { events: events.into_iter().map(timed).collect(), seconds: map.seconds(last_tick) }, repairs))

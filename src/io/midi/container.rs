@@ -48,17 +48,31 @@ impl<'a> Container<'a> {
         let mut at = file.len() - song.len();
         let header_chunk = next_chunk(file, &mut at, u32::from_be_bytes).filter(|chunk| chunk.promised >= 6);
         let (header, declared) = match header_chunk {
-            Some(chunk) if chunk.bytes.len() == chunk.promised => read_header(song, chunk.bytes)?,
+            Some(chunk) if chunk.bytes.len() == chunk.promised => read_header(song, chunk.bytes, &mut repair)?,
             _ => return Err("not a whole MIDI file: it breaks off in its header".to_owned()),
         };
         // If a file declares no tracks, its writer was interrupted before it could fill in the number.
         let wanted = if declared == 0 { usize::MAX } else { declared };
         let mut tracks = Vec::new();
-        while tracks.len() < wanted
-            && let Some(chunk) = next_chunk(file, &mut at, u32::from_be_bytes)
-        {
+        while tracks.len() < wanted {
+            if lenient && let Some(junk) = junk(&file[at.min(file.len())..]) {
+                repair(format!("after track {}, byte {at}: {junk} bytes belong to no track: left out", tracks.len()))?;
+                at += junk;
+            }
+            let Some(chunk) = next_chunk(file, &mut at, u32::from_be_bytes) else { break };
             match &chunk.id {
-                b"MTrk" => tracks.push(chunk.into_track()),
+                b"MTrk" => {
+                    let mut track = chunk.into_track();
+                    if lenient && let Some(length) = real_length(&file[track.start..], track.promised) {
+                        let (number, said) = (tracks.len() + 1, track.promised);
+                        repair(format!(
+                            "track {number} says that it has {said} bytes: it has {length} up to its end mark"
+                        ))?;
+                        (track.promised, at) = (length, track.start + length);
+                        track.bytes = &file[track.start..at];
+                    }
+                    tracks.push(track);
+                }
                 b"MThd" => return Err(format!("a second header after track {}: expected one song", tracks.len())),
                 _ => {}
             }
@@ -122,11 +136,51 @@ fn describe(file: &[u8]) -> String {
     if text { "a text file".to_owned() } else { "not a MIDI file".to_owned() }
 }
 
-fn read_header(song: &[u8], data: &[u8]) -> Result<(Header, usize), String> {
-    let kind = u16::from_be_bytes([data[0], data[1]]);
-    if kind > 1 {
-        let meaning = if kind == 2 { " (independent patterns)" } else { "" };
-        return Err(format!("a MIDI file of type {kind}{meaning}: expected type 0 or 1"));
+/// Bytes of meta event 2F, which ends a track.
+const END_MARK: &[u8] = &[0xff, 0x2f, 0];
+
+/// Whether a chunk starts here: a track, or another one that is all there.
+fn starts_chunk(file: &[u8]) -> bool {
+    next_chunk(file, &mut 0, u32::from_be_bytes)
+        .is_some_and(|chunk| &chunk.id == b"MTrk" || chunk.id.is_ascii() && chunk.promised == chunk.bytes.len())
+}
+
+/// Number of bytes before the next track, if what stands there is no chunk.
+fn junk(file: &[u8]) -> Option<usize> {
+    if starts_chunk(file) { None } else { find(file, b"MTrk") }
+}
+
+/// The length of the track at the start of `file`, if it is not the promised one.
+fn real_length(file: &[u8], promised: usize) -> Option<usize> {
+    let (inside, after) = file.split_at(promised.min(file.len()));
+    let swallowed = find(inside, &[END_MARK, b"MTrk"].concat());
+    let goes_on = !after.is_empty() && !starts_chunk(after) && !inside.ends_with(END_MARK);
+    let end = swallowed.or_else(|| {
+        let own = inside.len() + find(after, b"MTrk").unwrap_or(after.len());
+        // The end mark may begin inside.
+        let from = inside.len().saturating_sub(END_MARK.len() - 1);
+        find(&file[from..own], END_MARK).filter(|_| goes_on).map(|end| from + end)
+    });
+    end.map(|end| end + END_MARK.len())
+}
+
+fn find(bytes: &[u8], pattern: &[u8]) -> Option<usize> {
+    bytes.windows(pattern.len()).position(|window| window == pattern)
+}
+
+fn read_header(
+    song: &[u8],
+    data: &[u8],
+    repair: &mut impl FnMut(String) -> Result<(), String>,
+) -> Result<(Header, usize), String> {
+    let mut chunk = song[..8 + data.len()].to_vec();
+    match u16::from_be_bytes([data[0], data[1]]) {
+        0 | 1 => {}
+        2 => return Err("a MIDI file of type 2 (independent patterns): expected type 0 or 1".to_owned()),
+        kind => {
+            repair(format!("a MIDI file of type {kind}: expected type 0 or 1"))?;
+            chunk[8..10].copy_from_slice(&[0, 1]);
+        }
     }
     // midly negates this byte as an `i8`, which overflows for 0x80.
     let frames_per_second = data[4].wrapping_neg();
@@ -134,7 +188,7 @@ fn read_header(song: &[u8], data: &[u8]) -> Result<(Header, usize), String> {
         let expected = "expected 24, 25, 29 or 30 SMPTE frames per second";
         return Err(format!("not a valid MIDI file: {expected}, found {frames_per_second}"));
     }
-    let (header, tracks) = midly::parse(&song[..8 + data.len()]).map_err(|error| error.kind().message().to_owned())?;
+    let (header, tracks) = midly::parse(&chunk).map_err(|error| error.kind().message().to_owned())?;
     Ok((header, tracks.size_hint().0))
 }
 

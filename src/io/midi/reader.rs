@@ -10,6 +10,7 @@ use midly::live::LiveEvent;
 use midly::num::u4;
 use midly::{EventIter, MetaMessage, MidiMessage, Timing, TrackEvent, TrackEventKind};
 use std::fmt;
+use std::mem::discriminant;
 
 /// Maximum number of events in a song. Each takes 32 bytes of memory.
 pub const MAX_EVENTS: usize = 8_000_000;
@@ -32,7 +33,8 @@ pub(super) struct TrackReader {
 /// A fault that was repaired, one or more times in a track.
 pub(super) struct Repair {
     track: usize,
-    fault: String,
+    /// The first fault of its kind.
+    fault: Fault,
     /// How it was repaired.
     remedy: &'static str,
     /// Where it first occurred.
@@ -77,21 +79,39 @@ impl TrackReader {
                 match (fault, status, after) {
                     (Fault::CutOff, ..) => {
                         if whole {
-                            self.repair(spot, &fault.to_string(), "left out")?;
+                            self.repair(spot, fault, "left out")?;
                         }
                         break;
                     }
                     (Fault::NoStatus, Some(_), _) => {
-                        self.repair(spot, &fault.to_string(), "it goes on")?;
+                        self.repair(spot, fault, "it goes on")?;
                         events = EventIter::new(rest);
                         *events.running_status_mut() = status;
                     }
-                    (Fault::Meta(_), _, Some(after)) => {
-                        self.repair(spot, &fault.to_string(), "left out")?;
+                    (_, _, Some(after)) => {
+                        let mended = match fault {
+                            Fault::Data(_, message) => mend(message),
+                            _ => None,
+                        };
+                        let remedy = match (fault, mended) {
+                            (Fault::LongTime, _) => "read nevertheless",
+                            (_, Some(_)) => "127 is taken for it",
+                            (_, None) => "left out",
+                        };
+                        self.repair(spot, fault, remedy)?;
+                        if let Fault::Data(_, [running, ..]) = fault {
+                            status = Some(running);
+                        }
                         tick = spot.tick;
+                        self.last_tick = self.last_tick.max(tick);
+                        self.events.extend(mended.map(|(channel, kind)| (tick, channel, kind)));
                         events = EventIter::new(after);
+                        *events.running_status_mut() = status;
                     }
-                    _ => return Err(self.refused(spot, &fault.to_string())),
+                    _ => {
+                        self.repair(spot, fault, "the rest of the track is left out")?;
+                        break;
+                    }
                 }
                 continue;
             };
@@ -105,8 +125,7 @@ impl TrackReader {
         if !whole {
             let (there, promised) = (track.bytes.len(), track.promised);
             let spot = Spot { track: number, tick, byte: track.start + there };
-            let fault = format!("the file is cut off: {there} of the track's {promised} bytes are there");
-            self.repair(spot, &fault, "played as far as it goes")?;
+            self.repair(spot, Fault::Whole([there, promised]), "played as far as it goes")?;
         }
         Ok(())
     }
@@ -122,7 +141,7 @@ impl TrackReader {
                 self.events.extend(system_exclusive(message).into_iter().map(|(channel, kind)| (tick, channel, kind)));
             }
             TrackEventKind::Meta(MetaMessage::Tempo(tempo)) if tempo == 0 => {
-                self.repair(spot, "the tempo is 0 µs per quarter note: expected at least 1", "left out")?;
+                self.repair(spot, Fault::Tempo, "left out")?;
             }
             TrackEventKind::Meta(MetaMessage::Tempo(tempo)) => self.tempos.push((tick, tempo.as_int())),
             TrackEventKind::Meta(MetaMessage::TimeSignature(beats, note, ..)) => self.bars.change(tick, beats, note),
@@ -136,20 +155,22 @@ impl TrackReader {
     }
 
     /// Records a repair. In strict reading, returns an error instead.
-    fn repair(&mut self, spot: Spot, fault: &str, remedy: &'static str) -> Result<(), String> {
+    fn repair(&mut self, spot: Spot, fault: Fault, remedy: &'static str) -> Result<(), String> {
         if !self.lenient {
-            return Err(self.refused(spot, fault));
+            return Err(self.refused(spot, &fault.to_string()));
         }
         let is_full = self.repairs.len() >= MOST_REPAIRS;
         let mut of_track = self.repairs.iter_mut().rev().take_while(|repair| repair.track == spot.track);
-        match of_track.find(|repair| repair.fault == fault) {
+        let is_alike =
+            |repair: &&mut Repair| discriminant(&repair.fault) == discriminant(&fault) && repair.remedy == remedy;
+        match of_track.find(is_alike) {
             Some(repair) => repair.times += 1,
             None if is_full => {
                 return Err(self.refused(spot, &format!("more than {MOST_REPAIRS} faults: this is hardly a MIDI file")));
             }
             None => {
-                let (track, fault, place) = (spot.track, fault.to_owned(), self.place(spot));
-                self.repairs.push(Repair { track, fault, remedy, place, times: 1 });
+                let place = self.place(spot);
+                self.repairs.push(Repair { track: spot.track, fault, remedy, place, times: 1 });
             }
         }
         Ok(())
@@ -162,6 +183,14 @@ impl TrackReader {
     fn place(&self, Spot { track, tick, byte }: Spot) -> String {
         format!("track {track}, {} (tick {tick}, byte {byte})", self.bars.place(tick))
     }
+}
+
+/// The event of a message with a data byte above 127, which is taken as 127. None if that would be another key or program.
+fn mend(message: [u8; 3]) -> Option<(u8, EventKind)> {
+    let [status, first, second] = message;
+    let names_something = !matches!(status >> 4, 0xd | 0xe);
+    let is_lost = names_something && first > 127;
+    if is_lost { None } else { parse_message(&[status, first.min(127), second.min(127)]) }
 }
 
 /// The channel and event of a message, converted as if its bytes came from a MIDI port.
