@@ -91,6 +91,8 @@ impl<'a> Jobs<'a> {
         }
         let text = str::from_utf8(&text);
         let text = text.map_err(|_| self.fault(("line".to_owned(), "expected UTF-8 text".to_owned())))?;
+        // Some editors begin a file with a byte order mark.
+        let text = if self.line == 1 { text.trim_start_matches('\u{feff}') } else { text };
         let template = Template::parse(text, self.batch).map_err(|fault| self.fault(fault))?;
         self.left = template.repeat;
         self.template = Some(template);

@@ -73,6 +73,7 @@ impl Template {
         let Value::Object(object) = value else {
             return Err(whole("expected an object, as in {\"preset\": \"Kick\", \"note\": \"C4\"}".to_owned()));
         };
+        let names: Vec<String> = object.keys().cloned().collect();
         let (mut entries, mut repeat) = (Vec::new(), 1);
         for (key, value) in object {
             match (key.as_str(), value) {
@@ -87,6 +88,11 @@ impl Template {
                 }
                 (_, value) => entries.push(Entry::new(vec![key], value)?),
             }
+        }
+        let is_twice = |entry: &&Entry| matches!(&entry.path[..], [set, name] if set == SET && names.contains(name));
+        if let Some(twice) = entries.iter().find(is_twice) {
+            let name = &twice.path[1];
+            return Err((twice.path.join("."), format!("‘{name}’ is in the line as well: expected it once")));
         }
         // Sorted by name: the same job is written in the same way, whatever the order in the file.
         entries.sort_by(|a, b| a.path.cmp(&b.path));

@@ -26,6 +26,7 @@ pub(crate) struct Channel {
     /// 0–1.
     pub(crate) expression: f32,
     pan: f32,
+    balance: f32,
     gain: StereoGain,
     registered: Registered,
 }
@@ -80,6 +81,7 @@ impl Channel {
             volume: 1.0,
             expression: 1.0,
             pan: 0.5,
+            balance: 0.5,
             gain: StereoGain::new(sample_rate),
             registered: Registered::INITIAL,
         }
@@ -96,17 +98,23 @@ impl Channel {
             controller::VOLUME => self.volume = value,
             controller::EXPRESSION => self.expression = value,
             controller::PAN => self.pan = centred(value),
+            controller::BALANCE => self.balance = centred(value),
             controller::RPN => self.registered.number.0 = data,
             controller::RPN_FINE => self.registered.number.1 = data,
             controller::NRPN | controller::NRPN_FINE => self.registered.number = Registered::NONE,
             controller::DATA => self.enter(|entry| *entry = (data, 0)),
             controller::DATA_FINE => self.enter(|entry| entry.1 = data),
+            controller::INCREMENT => self.step(1),
+            controller::DECREMENT => self.step(-1),
             controller::RESET => self.reset_controllers(),
             _ => {}
         }
-        if matches!(controller, controller::VOLUME | controller::EXPRESSION | controller::PAN | controller::RESET) {
+        if let controller::VOLUME | controller::EXPRESSION | controller::PAN | controller::BALANCE | controller::RESET =
+            controller
+        {
             let gain = self.volume * self.volume * self.expression * self.expression;
-            self.gain.aim(gain, self.pan);
+            // A pan leaves the sides of a sound apart, as a balance does.
+            self.gain.aim(gain, (self.pan + self.balance - 0.5).clamp(0.0, 1.0));
         }
     }
 
@@ -118,6 +126,18 @@ impl Channel {
                 self.bend_range = Some(self.registered.semitones_and_cents());
             }
         }
+    }
+
+    /// Changes the selected registered parameter by a step: a semitone, but the finest one of fine tuning.
+    fn step(&mut self, by: i32) {
+        let is_fine = self.registered.number.1 == Registered::FINE as u8;
+        self.enter(|entry| {
+            let unit = if is_fine { 1 } else { 128 };
+            let value = 128 * i32::from(entry.0) + i32::from(entry.1) + unit * by;
+            if (0..128 * 128).contains(&value) {
+                *entry = ((value / 128) as u8, (value % 128) as u8);
+            }
+        });
     }
 
     /// Whether data entry sets the size of an MPE zone.
@@ -248,6 +268,9 @@ mod tests {
             (&[(101, 0), (100, 1), (6, 16)], -0.75),
             (&[(101, 0), (100, 2), (6, 66), (100, 1), (6, 127), (38, 127), (6, 64)], 2.0),
             (&[(101, 0), (100, 0), (6, 12), (100, 1), (38, 0)], 0.0),
+            (&[(101, 0), (100, 2), (96, 0), (96, 0), (97, 0)], 1.0),
+            (&[(101, 0), (100, 1), (97, 0), (96, 0), (96, 0)], 1.0 / 8192.0),
+            (&[(101, 0), (100, 1), (6, 127), (38, 127), (96, 0)], 8191.0 / 8192.0),
         ] {
             let mut channel = Channel::new(48_000.0);
             data(&mut channel, entries);
@@ -260,6 +283,8 @@ mod tests {
         let mut channel = Channel::new(48_000.0);
         data(&mut channel, &[(101, 0), (100, 0), (38, 50)]);
         assert_eq!(channel.bend_range, Some(2.5));
+        data(&mut channel, &[(96, 127)]);
+        assert_eq!(channel.bend_range, Some(3.5));
     }
 
     #[test]
@@ -273,6 +298,8 @@ mod tests {
         let (left, right) = channel.gains_after(240);
         assert!((left - 0.5).abs() < 1e-6 && (right - 0.5).abs() < 1e-6);
         assert_eq!(channel.gains_after(480), (0.0, 0.0));
+        data(&mut channel, &[(10, 127), (8, 1), (7, 127)]);
+        assert_eq!(channel.gains_after(480), (1.0, 1.0), "pan to the right, balance to the left");
     }
 
     #[test]

@@ -12,6 +12,8 @@ pub mod controller {
     pub(crate) const DATA: u8 = 6;
     /// Channel volume.
     pub(crate) const VOLUME: u8 = 7;
+    /// Balance.
+    pub(crate) const BALANCE: u8 = 8;
     /// Pan.
     pub(crate) const PAN: u8 = 10;
     /// Expression.
@@ -28,6 +30,10 @@ pub mod controller {
     pub(crate) const BRIGHTNESS: u8 = 74;
     /// How much of a channel is sent to the space that a song's channels share.
     pub const REVERB_SEND: u8 = 91;
+    /// Raises the selected registered parameter by a step.
+    pub(crate) const INCREMENT: u8 = 96;
+    /// Lowers it by a step.
+    pub(crate) const DECREMENT: u8 = 97;
     /// Selects a non-registered parameter, least significant seven bits.
     pub(crate) const NRPN_FINE: u8 = 98;
     /// Selects a non-registered parameter, most significant seven bits.

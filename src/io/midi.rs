@@ -2,6 +2,7 @@
 
 mod container;
 mod fault;
+mod master_volume;
 mod reader;
 mod simultaneous;
 mod system_exclusive;
@@ -95,6 +96,7 @@ fn parse(bytes: &[u8], lenient: bool) -> Result<(Song, Vec<String>), String> {
     events.splice(..0, told);
     events.sort_by_key(|(tick, ..)| *tick);
     simultaneous::release_before_strike(&mut events);
+    let events = master_volume::spread(events)?;
     let map = TempoMap::new(header.timing, &tempos)?;
     let timed = |(tick, channel, kind)| SongEvent { seconds: map.seconds(tick), channel, kind };
     Ok((Song { events: events.into_iter().map(timed).collect(), seconds: map.seconds(last_tick) }, repairs))

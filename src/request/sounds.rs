@@ -146,14 +146,17 @@ impl SoundRequest {
         inputs
     }
 
-    /// Warns of program changes without a sound or away from the requested sound, of keys that the tuning does not map,
+    /// Warns of a song without notes, of program changes without a sound or away from the requested sound, of keys that the tuning does not map,
     /// and of channels and notes that stay silent.
     pub fn warn(&self, song: &Song, sounds: &Sounds, warn: &mut dyn FnMut(&str)) {
+        if !song.events.iter().any(|event| matches!(event.kind, EventKind::NoteOn { .. })) {
+            warn("there are no notes in the song");
+        }
         if let Some(list) = &sounds.list {
             programs::warn_of_missing(song, list, "what channels start with", warn);
         }
         programs::warn_of_changes(song, self.asked_for(sounds), &sounds.programs, warn);
-        tuning::warn_of_unmapped(song, &sounds.tuning, warn);
+        tuning::warn_of_unmapped(song, &sounds.tuning, self.tuning.keymap.is_some(), warn);
         self.warn_of_silence(song, sounds, warn);
     }
 

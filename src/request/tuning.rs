@@ -59,7 +59,7 @@ impl TuningRequest {
 }
 
 /// Warns of notes whose keys the tuning leaves silent.
-pub(super) fn warn_of_unmapped(song: &Song, tuning: &Tuning, warn: &mut dyn FnMut(&str)) {
+pub(super) fn warn_of_unmapped(song: &Song, tuning: &Tuning, has_keymap: bool, warn: &mut dyn FnMut(&str)) {
     let keys = || {
         song.events.iter().filter_map(|event| match event.kind {
             EventKind::NoteOn { key, .. } => Some(key),
@@ -69,6 +69,8 @@ pub(super) fn warn_of_unmapped(song: &Song, tuning: &Tuning, warn: &mut dyn FnMu
     let (all, silent) = (keys().count(), keys().filter(|key| tuning.pitch(*key).is_none()).count());
     if silent > 0 {
         let (all, are) = (counted(all, "note"), if all == 1 { "is" } else { "are" });
-        warn(&format!("{silent} of {all} {are} silent: the keymap leaves their keys out"));
+        let why =
+            if has_keymap { "the keymap leaves their keys out" } else { "the scale takes their keys out of range" };
+        warn(&format!("{silent} of {all} {are} silent: {why}"));
     }
 }

@@ -301,6 +301,9 @@ fn a_flac_has_the_samples_of_the_wav() {
 #[test]
 fn wrong_jobs_are_named_by_line_and_key() {
     let sandbox = Sandbox::new();
+    // A byte order mark is no part of a job.
+    sandbox.write("marked.jsonl", "\u{feff}{\"note\": \"C2\", \"length\": 0.01}\n");
+    sandbox.succeeds("batch marked.jsonl --out marked");
     for (line, message) in [
         ("{", "jobs.jsonl:2: line: no JSON: "),
         ("[1]", "jobs.jsonl:2: line: expected an object, as in"),
@@ -309,6 +312,10 @@ fn wrong_jobs_are_named_by_line_and_key() {
         (
             r#"{"note": "C2", "velocty": 3}"#,
             "jobs.jsonl:2: velocty: there is no option or parameter ‘velocty’; the nearest is ‘velocity’",
+        ),
+        (
+            r#"{"note": "C2", "decay": 1, "set": {"decay": 2}}"#,
+            "jobs.jsonl:2: set.decay: ‘decay’ is in the line as well: expected it once",
         ),
         (r#"{"note": "C2", "decay": "2 m"}"#, "jobs.jsonl:2: decay: ‘2 m’ is not a number in s"),
         (

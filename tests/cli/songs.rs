@@ -50,6 +50,13 @@ fn lenient_reading_plays_what_strict_reading_refuses() {
 }
 
 #[test]
+fn a_song_without_notes_is_told() {
+    let sandbox = Sandbox::new();
+    sandbox.write("in.mid", song(&[end(1)]));
+    assert!(said(&sandbox, "render in.mid -o out.wav").contains("warning: there are no notes in the song"));
+}
+
+#[test]
 fn what_is_no_midi_file_is_called_what_it_is() {
     let sandbox = Sandbox::new();
     sandbox.succeeds("render --note 60 --length 0.1 --tail none -o sound.wav");

@@ -49,6 +49,16 @@ fn unmapped_keys_are_silent() {
     let report: serde_json::Value = serde_json::from_slice(&sandbox.succeeds(args)).unwrap();
     assert_eq!(report["voices_used"], 0);
     assert_eq!(sandbox.wav("out.wav").peak(), 0.0);
+    let told = |args: &str| {
+        let output = sandbox.sprung(args).assert().success().get_output().clone();
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let unmapped = told(&args.replace("--json", "--force"));
+    assert!(unmapped.contains("2 of 2 notes are silent: the keymap leaves their keys out"), "{unmapped}");
+    // Steps of a hundred octaves.
+    sandbox.write("wide.scl", "wide\n1\n120000.0\n");
+    let wide = told("render --note 0,69 --preset init --scale wide.scl --length 0.01 --force -o out.wav");
+    assert!(wide.contains("warning: 1 of 2 notes are silent: the scale takes their keys out of range"), "{wide}");
 }
 
 #[test]

@@ -70,7 +70,9 @@ impl Channels {
         }
         let sender = *self.of(channel);
         self.gains_moving = sender.slope_frames();
-        if matches!(number, controller::DATA | controller::DATA_FINE) && sender.awaits_bend_range() {
+        let is_entry =
+            matches!(number, controller::DATA | controller::DATA_FINE | controller::INCREMENT | controller::DECREMENT);
+        if is_entry && sender.awaits_bend_range() {
             for sibling in self.zones.siblings(channel) {
                 self.channels[usize::from(sibling)].bend_range = sender.bend_range;
             }

@@ -12,7 +12,7 @@ pub(super) fn release_before_strike(events: &mut [(u64, u8, EventKind)]) {
         let mut early = Vec::new();
         for (index, (tick, channel, kind)) in simultaneous.iter().enumerate() {
             let (EventKind::NoteOn { key, .. } | EventKind::NoteOff { key, .. }) = *kind else { continue };
-            let (channel, key) = (usize::from(*channel & 15), usize::from(key & 127));
+            let (channel, key) = (usize::from(*channel), usize::from(key));
             let (held, struck) = (&mut held[channel][key], &mut struck[channel][key]);
             if matches!(kind, EventKind::NoteOn { .. }) {
                 if *held {

@@ -1,28 +1,42 @@
-//! Converts system exclusive messages to events: resets of General MIDI, GS and XG, and GS drum parts.
+//! Converts system exclusive messages to events: resets of General MIDI, GS and XG, master volumes, and GS drum parts.
 
+use super::master_volume::ALL;
 use crate::engine::EventKind;
 use crate::engine::banks::{BANK_SELECT, DRUM_BANK, DRUM_CHANNEL, MELODIC_BANK};
 use crate::engine::midi::DEFAULT_REVERB_SEND;
-use crate::engine::midi::controller::REVERB_SEND;
+use crate::engine::midi::controller::{REVERB_SEND, VOLUME};
 
 /// Bytes of reset messages, without the first byte F0 and without device numbers: General MIDI 1 and 2 on, and off
 /// (Universal Non-Real Time messages), and Yamaha's XG System On.
 const GENERAL_MIDI: [u8; 2] = [0x7E, 0x09];
 const XG_RESET: [u8; 6] = [0x4C, 0x00, 0x00, 0x7E, 0x00, 0xF7];
 
+/// The start of messages that set the master volume: of every device (Universal Real Time), XG and GS.
+const MASTER_VOLUME: [u8; 2] = [0x04, 0x01];
+const XG_MASTER_VOLUME: [u8; 4] = [0x4C, 0x00, 0x00, 0x04];
+const GS_MASTER_VOLUME: [u8; 3] = [0x40, 0x00, 0x04];
+
 /// Roland's GS: the start of a message that sets data, GS reset, and the address of “use for rhythm part” (40 1x 15),
 /// where `x` is 0 for channel 10 and 1 to 9 for channels 1 to 9 (Roland SC-55 manual, 1991).
 const GS_SET: [u8; 2] = [0x42, 0x12];
 const GS_RESET: [u8; 3] = [0x40, 0x00, 0x7F];
 
-/// The events that a message is converted to, with their channels: bank selects, reverb sends and program changes.
+/// The events that a message is converted to, with their channels: volumes of [`ALL`], bank selects, reverb sends and program
+/// changes.
 /// `message` is the message after its byte F0. All other messages give no events.
 pub(super) fn system_exclusive(message: &[u8]) -> Vec<(u8, EventKind)> {
     match message {
         [universal, _, id, 0x01..=0x03, ..] if [*universal, *id] == GENERAL_MIDI => reset(),
         [0x43, _, rest @ ..] if rest.starts_with(&XG_RESET) => reset(),
+        [0x7F, _, first, second, fine, coarse, 0xF7] if [*first, *second] == MASTER_VOLUME => {
+            master_volume((f32::from(*coarse) * 128.0 + f32::from(*fine)) / 16_383.0)
+        }
+        [0x43, _, rest @ .., volume, 0xF7] if *rest == XG_MASTER_VOLUME => master_volume(f32::from(*volume) / 127.0),
         [0x41, _, model, set, rest @ ..] if [*model, *set] == GS_SET => match rest {
             _ if rest.starts_with(&GS_RESET) => reset(),
+            [address @ .., volume, _, 0xF7] if *address == GS_MASTER_VOLUME => {
+                master_volume(f32::from(*volume) / 127.0)
+            }
             [0x40, part @ 0x10..=0x1F, 0x15, map, ..] => drum_part(part & 15, *map > 0),
             _ => Vec::new(),
         },
@@ -34,11 +48,16 @@ fn bank(value: u8) -> EventKind {
     EventKind::Control { controller: BANK_SELECT, value: f32::from(value) / 127.0 }
 }
 
-/// Sets every channel to bank 0 and its reverb send to the default (General MIDI 2). The sound of a channel changes
-/// only with its next program change.
+fn master_volume(value: f32) -> Vec<(u8, EventKind)> {
+    vec![(ALL, EventKind::Control { controller: VOLUME, value })]
+}
+
+/// Sets every channel to bank 0 and its reverb send to the default (General MIDI 2), and the master volume to its maximum. The
+/// sound of a channel changes only with its next program change.
 fn reset() -> Vec<(u8, EventKind)> {
     let send = EventKind::Control { controller: REVERB_SEND, value: DEFAULT_REVERB_SEND };
-    (0..16).flat_map(|channel| [(channel, bank(0)), (channel, send)]).collect()
+    let channels = (0..16).flat_map(|channel| [(channel, bank(0)), (channel, send)]);
+    channels.chain(master_volume(1.0)).collect()
 }
 
 /// Makes a part of a GS device a drum part or a melodic part, at once.
@@ -74,9 +93,21 @@ mod tests {
             &[0x41, 0x10, 0x42, 0x12, 0x40, 0x00, 0x7F, 0x00, 0x41, 0xF7],
             &[0x43, 0x10, 0x4C, 0x00, 0x00, 0x7E, 0x00, 0xF7],
         ] {
-            assert_eq!(send(reset).len(), 32);
+            assert_eq!(send(reset).len(), 33);
         }
         assert!(send(&[0x7E, 0x7F, 0x06, 0x01, 0xF7]).is_empty(), "an identity request");
         assert!(send(&[]).is_empty());
+    }
+
+    #[test]
+    fn every_kind_of_master_volume_is_read() {
+        for (message, value) in [
+            (&[0x7F, 0x7F, 0x04, 0x01, 0x00, 0x40, 0xF7][..], 8192.0 / 16_383.0),
+            (&[0x7F, 0x7F, 0x04, 0x01, 0x7F, 0x7F, 0xF7], 1.0),
+            (&[0x43, 0x10, 0x4C, 0x00, 0x00, 0x04, 0x00, 0xF7], 0.0),
+            (&[0x41, 0x10, 0x42, 0x12, 0x40, 0x00, 0x04, 0x7F, 0x3D, 0xF7], 1.0),
+        ] {
+            assert_eq!(system_exclusive(message), master_volume(value));
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Reads AIFF, FLAC, Ogg Vorbis and MP3, which Symphonia decodes.
+//! Reads AIFF, FLAC, Ogg Vorbis, MP3 and compressed WAV, which Symphonia decodes.
 
 use super::recording::{Recording, check_layout};
 use crate::error::{Error, Result};
@@ -8,7 +8,7 @@ use symphonia::core::codecs::audio::AudioDecoderOptions;
 use symphonia::core::errors::Error as Fault;
 use symphonia::core::formats::probe::Hint;
 use symphonia::core::formats::{FormatOptions, TrackType};
-use symphonia::core::io::{MediaSource, MediaSourceStream};
+use symphonia::core::io::{MediaSource, MediaSourceStream, ReadOnlySource};
 use symphonia::core::meta::MetadataOptions;
 
 /// Length in bytes of the longest frame of MPEG audio, 320 kbit/s at 8 kHz.
@@ -25,12 +25,13 @@ pub(super) fn read(file: File, name: &str, format: &str) -> Result<Recording> {
     let again = file.try_clone().map_err(|source| Error::io(name, source))?;
     let source: Box<dyn MediaSource> = match format {
         "AIFF" => match mended_aiff(&file).map_err(|source| Error::io(name, source))? {
-            Some(mended) => {
-                warnings.push("the file breaks off: what is there was read".to_owned());
+            Some((mended, warning)) => {
+                warnings.push(warning.to_owned());
                 Box::new(Cursor::new(mended))
             }
             None => Box::new(file),
         },
+        "FLAC" => bare_flac(file).map_err(|source| Error::io(name, source))?,
         _ => Box::new(file),
     };
     let source = MediaSourceStream::new(source, Default::default());
@@ -71,9 +72,18 @@ pub(super) fn read(file: File, name: &str, format: &str) -> Result<Recording> {
         }
         match decoder.decode(&packet) {
             Ok(buffer) => {
-                found.sample_rate = buffer.spec().rate();
+                let (rate, frames) = (buffer.spec().rate(), found.frames());
                 buffer.copy_to_vecs_planar(&mut planes);
-                found.channels.resize_with(planes.len().max(found.channels.len()), Vec::new);
+                if frames > 0 && (rate, planes.len()) != (found.sample_rate, found.channels.len()) {
+                    found.warnings.push(format!(
+                        "from {rate} Hz and {} channels on, frame {frames}, the rest was left out: one sound has one rate and \
+                         number of channels",
+                        planes.len()
+                    ));
+                    break;
+                }
+                found.sample_rate = rate;
+                found.channels.resize_with(planes.len(), Vec::new);
                 found.channels.iter_mut().zip(&planes).for_each(|(channel, plane)| channel.extend(plane));
             }
             Err(Fault::DecodeError(_)) => faults += 1,
@@ -118,17 +128,63 @@ fn track_frames(container: &dyn symphonia::core::formats::FormatReader, track: u
     container.tracks().iter().find(|other| other.id == track)?.num_frames
 }
 
-/// The contents of an AIFF file that is cut off within its samples, with its sizes corrected, since the decoder would
-/// refuse it otherwise. `None` for a complete file, and for one that is cut off before its samples.
-fn mended_aiff(mut file: &File) -> std::io::Result<Option<Vec<u8>>> {
+/// A FLAC without an ID3v2 tag before it, and of its metadata only the description of the stream: the decoder would refuse the
+/// whole file for a fault in what the sound does not need.
+fn bare_flac(mut file: File) -> std::io::Result<Box<dyn MediaSource>> {
+    /// Length in bytes of the description of the stream, and the shortest block that it may have (RFC 9639, §8.2).
+    const DESCRIPTION: usize = 34;
+    const LEAST_BLOCK: [u8; 2] = [0, 16];
+    let mut magic = super::start(&mut file)?;
+    let start = super::tag_len(&magic).unwrap_or(0);
+    file.seek(SeekFrom::Start(start + 4))?;
+    let mut description = None;
+    loop {
+        let mut head = [0; 4];
+        if file.read_exact(&mut head).is_err() {
+            break;
+        }
+        let size = u32::from_be_bytes([0, head[1], head[2], head[3]]) as usize;
+        if head[0] & 0x7f == 0 && size == DESCRIPTION {
+            let mut block = [0; DESCRIPTION];
+            if file.read_exact(&mut block).is_err() {
+                break;
+            }
+            description = Some(block);
+        } else {
+            file.seek_relative(size as i64)?;
+        }
+        if head[0] & 0x80 != 0 {
+            break;
+        }
+    }
+    let mut frame = [0; 2];
+    let (Some(mut description), Ok(())) = (description, file.read_exact(&mut frame)) else {
+        file.seek(SeekFrom::Start(start))?;
+        return Ok(Box::new(ReadOnlySource::new(file)));
+    };
+    // The shortest block is as long as the longest if all are alike, as bit 0 of a frame’s second byte says (§9.1).
+    let least = if frame[1] & 1 == 0 { [description[2], description[3]] } else { LEAST_BLOCK };
+    description[..2].copy_from_slice(&least);
+    magic.clear();
+    magic.extend(b"fLaC\x80\0\0\x22");
+    magic.extend(description);
+    magic.extend(frame);
+    Ok(Box::new(ReadOnlySource::new(Cursor::new(magic).chain(file))))
+}
+
+/// The contents of an AIFF file whose sizes the decoder would refuse, with its sizes corrected, and what was wrong: it is cut off
+/// within its samples, or says that it is longer than it is. `None` for other files, and for one that is cut off before its samples.
+fn mended_aiff(mut file: &File) -> std::io::Result<Option<(Vec<u8>, &'static str)>> {
     let len = file.metadata()?.len();
     let (mut at, mut common) = (12, None);
     let mut found = None;
+    let mut head = [0; 8];
+    file.seek(SeekFrom::Start(0))?;
+    let is_too_long = file.read_exact(&mut head).is_ok() && form_size(&head) + 8 > len;
     while at + 8 <= len {
-        let mut head = [0; 8];
         file.seek(SeekFrom::Start(at))?;
         file.read_exact(&mut head)?;
-        let size = u64::from(u32::from_be_bytes([head[4], head[5], head[6], head[7]]));
+        let size = form_size(&head);
         match &head[..4] {
             b"COMM" => common = Some(at as usize + 8),
             // Eight bytes of offset and block size come before the samples.
@@ -138,9 +194,16 @@ fn mended_aiff(mut file: &File) -> std::io::Result<Option<Vec<u8>>> {
         at += 8 + size + size % 2;
     }
     file.seek(SeekFrom::Start(0))?;
-    let Some((common, samples)) = found else { return Ok(None) };
+    if !is_too_long && found.is_none() {
+        return Ok(None);
+    }
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes)?;
+    let Some((common, samples)) = found else {
+        let whole = bytes.len() as u32 - 8;
+        bytes[4..8].copy_from_slice(&whole.to_be_bytes());
+        return Ok(Some((bytes, "the file says that it is longer than it is")));
+    };
     let word = |at: usize| u64::from(u16::from_be_bytes([bytes[at], bytes[at + 1]]));
     let frame_len = word(common) * word(common + 6).div_ceil(8);
     let data_len = bytes.len() as u64 - samples - 16;
@@ -151,5 +214,10 @@ fn mended_aiff(mut file: &File) -> std::io::Result<Option<Vec<u8>>> {
     bytes[4..8].copy_from_slice(&whole.to_be_bytes());
     bytes[samples + 4..samples + 8].copy_from_slice(&chunk.to_be_bytes());
     bytes[common + 2..common + 6].copy_from_slice(&(frames as u32).to_be_bytes());
-    Ok(Some(bytes))
+    Ok(Some((bytes, "the file breaks off: what is there was read")))
+}
+
+/// The size in a chunk’s first eight bytes.
+fn form_size(head: &[u8; 8]) -> u64 {
+    u64::from(u32::from_be_bytes([head[4], head[5], head[6], head[7]]))
 }

@@ -1,4 +1,4 @@
-//! Reads sound files: WAV of every kind, and with the feature `codecs` AIFF, FLAC, Ogg Vorbis and MP3.
+//! Reads sound files: WAV of every kind, AIFF, FLAC, Ogg Vorbis and MP3.
 
 mod codecs;
 mod recording;
@@ -13,7 +13,9 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 
 /// Number of bytes at the start of a file that identify its format.
-const MAGIC_LEN: usize = 12;
+const MAGIC_LEN: usize = 36;
+/// Length in bytes of the header of an ID3v2 tag.
+const TAG_LEN: u64 = 10;
 
 /// Reads a sound file to its end; `name` is its name in errors. A file that is cut off is read up to its end, with a
 /// line in [`Recording::warnings`].
@@ -23,16 +25,23 @@ const MAGIC_LEN: usize = 12;
 /// that is not read, without a single frame, or as [`Recording::check_layout`].
 pub fn read(mut file: File, name: &str) -> Result<Recording> {
     let failed = |source| Error::io(name, source);
-    let mut magic = Vec::with_capacity(MAGIC_LEN);
-    (&mut file).take(MAGIC_LEN as u64).read_to_end(&mut magic).map_err(failed)?;
+    let mut magic = start(&mut file).map_err(failed)?;
     if magic.is_empty() {
         return Err(Error::format(name, "the file is empty: expected a sound file"));
+    }
+    // Some programs tag a FLAC as if it were an MP3.
+    let tagged = tag_len(&magic).unwrap_or(0);
+    file.seek(SeekFrom::Start(tagged)).map_err(failed)?;
+    let below = start(&mut file).map_err(failed)?;
+    if below.starts_with(b"fLaC") {
+        magic = below;
     }
     file.seek(SeekFrom::Start(0)).map_err(failed)?;
     let recording = match Format::of(&magic) {
         Some(Format::Wav) => wav::read(file, name),
         Some(Format::Coded(format)) => codecs::read(file, name, format),
-        None => Err(Error::format(name, "this is not a sound file: expected WAV, AIFF, FLAC, Ogg Vorbis or MP3")),
+        Some(Format::Opus) => Err(Error::format(name, format!("this is Opus: expected {FORMATS}"))),
+        None => Err(Error::format(name, format!("this is not a sound file: expected {FORMATS}"))),
     }?;
     if recording.frames() == 0 {
         return Err(Error::format(name, "there is no sound in the file: expected at least one frame"));
@@ -41,12 +50,32 @@ pub fn read(mut file: File, name: &str) -> Result<Recording> {
     Ok(recording)
 }
 
+const FORMATS: &str = "WAV, AIFF, FLAC, Ogg Vorbis or MP3";
+
+/// The next bytes of a file, at most [`MAGIC_LEN`].
+fn start(file: &mut File) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(MAGIC_LEN);
+    file.take(MAGIC_LEN as u64).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The length in bytes of the ID3v2 tag that a file starts with. Its size has 7 bits a byte, and leaves out header and footer
+/// (ID3v2.4, §3.1).
+fn tag_len(magic: &[u8]) -> Option<u64> {
+    let tag = magic.strip_prefix(b"ID3")?;
+    let (flags, size) = (tag.get(2)?, tag.get(3..7)?);
+    let size = size.iter().fold(0, |size, byte| size << 7 | u64::from(byte & 0x7f));
+    Some(size + TAG_LEN * if flags & 0x10 != 0 { 2 } else { 1 })
+}
+
 /// The format that the first bytes of a file indicate.
 #[derive(Debug, PartialEq)]
 enum Format {
     Wav,
     /// A format that needs a decoder, by its name.
     Coded(&'static str),
+    /// Ogg with Opus, which nothing here decodes.
+    Opus,
 }
 
 impl Format {
@@ -61,6 +90,8 @@ impl Format {
             Some(Self::Coded("AIFF"))
         } else if at(0, b"fLaC") {
             Some(Self::Coded("FLAC"))
+        } else if at(0, b"OggS") && at(28, b"OpusHead") {
+            Some(Self::Opus)
         } else if at(0, b"OggS") {
             Some(Self::Coded("Ogg"))
         } else if at(0, b"ID3") || mpeg() {

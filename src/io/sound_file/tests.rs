@@ -93,6 +93,7 @@ fn a_file_that_breaks_off_is_read_as_far_as_it_goes() {
 
 #[test]
 fn what_is_no_sound_is_refused_with_what_would_be_right() {
+    let opus = [&b"OggS\0\x02"[..], &[0; 22], b"OpusHead\x01\x02"].concat();
     let wav = |code, channels, bits| riff(&[chunk(b"fmt ", &format(code, channels, bits)), chunk(b"data", &[0; 64])]);
     for (bytes, message) in [
         (vec![], "x: the file is empty: expected a sound file"),
@@ -104,7 +105,9 @@ fn what_is_no_sound_is_refused_with_what_would_be_right() {
             riff(&[chunk(b"fmt ", &format(1, 1, 16)), chunk(b"data", &[])]),
             "x: there is no sound in the file: expected at least one frame",
         ),
-        (wav(7, 1, 8), "x: samples are coded as µ-law: expected PCM or floats"),
+        (wav(0x55, 1, 8), "x: samples are coded as MP3: expected PCM or floats"),
+        (wav(9, 1, 8), "x: samples are coded as format 9: expected PCM or floats"),
+        (opus, "x: this is Opus: expected WAV, AIFF, FLAC, Ogg Vorbis or MP3"),
         (wav(1, 0, 16), "x: it has 0 channels: expected 1 to 64"),
         (
             wav(3, 1, 16),
@@ -239,6 +242,59 @@ fn coded_files_hold_the_same_sound() {
             let message = parsed(&bytes[..len]).unwrap_err().to_string();
             assert!(message.starts_with("x: ") && message.contains("expected"), "{name}, {len} bytes: {message}");
         }
+    }
+}
+
+#[test]
+fn oddities_beside_the_sound_do_not_keep_it_from_being_read() {
+    let flac = include_bytes!("../../../tests/sounds/tone.flac");
+    let aiff = include_bytes!("../../../tests/sounds/tone.aiff");
+    // After its name, a FLAC has the description of the stream, in 4 + 34 bytes. Block 5 is a cue sheet, here of nonsense.
+    let cue_sheet = [&flac[..4], &[0], &flac[5..42], &[flac[4] & 0x80 | 5, 0, 0, 3, 1, 2, 3], &flac[42..]].concat();
+    let tagged = [b"ID3\x04\0\0\0\0\x01\x02", &[7; 130][..], flac].concat();
+    let mut no_least_block = flac.to_vec();
+    no_least_block[8..10].fill(0);
+    let mut too_long = aiff.to_vec();
+    too_long[5] += 1;
+    for (bytes, plain, encoding, warnings) in [
+        (cue_sheet, &flac[..], "FLAC", vec![]),
+        (tagged, flac, "FLAC", vec![]),
+        (no_least_block, flac, "FLAC", vec![]),
+        (too_long, aiff, "AIFF", vec!["the file says that it is longer than it is"]),
+    ] {
+        let (found, plain) = (parsed(&bytes).unwrap(), parsed(plain).unwrap());
+        assert_eq!(
+            (found.encoding.as_str(), found.warnings.iter().map(String::as_str).collect::<Vec<_>>()),
+            (encoding, warnings)
+        );
+        assert!(found.channels == plain.channels && found.sample_rate == plain.sample_rate);
+    }
+}
+
+#[test]
+fn integers_are_read_whether_their_padding_is_above_or_below() {
+    let mut fmt = format(1, 1, 24);
+    fmt[12] = 4;
+    let read = |samples: [i32; 3]| {
+        let data: Vec<u8> = samples.into_iter().flat_map(i32::to_le_bytes).collect();
+        parsed(&riff(&[chunk(b"fmt ", &fmt), chunk(b"data", &data)])).unwrap().channels[0].clone()
+    };
+    assert_eq!(read([1 << 22, -(1 << 22), 1]), [0.5, -0.5, 1.0 / 8_388_608.0], "above");
+    assert_eq!(read([1 << 30, -(1 << 30), 1 << 8]), [0.5, -0.5, 1.0 / 8_388_608.0], "below");
+    assert_eq!(read([1 << 22, -(1 << 22), 0]), [1.0 / 512.0, -1.0 / 512.0, 0.0], "below, and faint");
+}
+
+#[test]
+fn compressed_waves_are_decoded() {
+    // The loudest numbers of both laws, and silence (ITU-T G.711, tables 1 and 2).
+    for (code, encoding, data, expected) in
+        [(6, "A-law", [0xaa, 0x2a, 0xd5], [32_256, -32_256, 8]), (7, "µ-law", [0x80, 0x00, 0xff], [32_124, -32_124, 0])]
+    {
+        let fmt = [&format(code, 1, 8)[..], &[0, 0]].concat();
+        let data: Vec<u8> = data.into_iter().cycle().take(3000).collect();
+        let found = parsed(&riff(&[chunk(b"fmt ", &fmt), chunk(b"data", &data)])).unwrap();
+        assert_eq!((found.encoding.as_str(), found.frames(), found.warnings.len()), (encoding, 3000, 0));
+        assert_eq!(found.channels[0][..3], expected.map(|number: i16| f32::from(number) / 32_768.0));
     }
 }
 

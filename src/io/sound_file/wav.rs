@@ -1,7 +1,9 @@
-//! Reads WAV files: RIFF, RF64 and BW64, integers of 8 to 32 bits and floats, complete or cut off.
+//! Reads WAV files: RIFF, RF64 and BW64, integers of 8 to 32 bits and floats, complete or cut off; compressed ones are decoded.
 
+use super::codecs;
 use super::recording::{Recording, check_layout};
 use crate::error::{Error, Result};
+use std::fs::File;
 use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
 
 /// Smallest length in bytes that programs write into a `data` chunk of unknown length, when they write to a pipe.
@@ -13,6 +15,8 @@ const IN_DS64: u64 = 0xffff_ffff;
 const PCM: u16 = 1;
 const FLOAT: u16 = 3;
 const EXTENSIBLE: u16 = 0xfffe;
+/// Those that Symphonia decodes, and their names.
+const DECODED: [(u16, &str); 4] = [(2, "MS ADPCM"), (6, "A-law"), (7, "µ-law"), (0x11, "IMA ADPCM")];
 
 /// How the samples are stored.
 #[derive(Clone, Copy, Debug)]
@@ -22,10 +26,12 @@ struct Layout {
     sample_rate: u32,
     /// Bytes of a sample.
     width: usize,
+    /// Whether integers have fewer bits than their bytes.
+    padded: bool,
 }
 
 /// Reads a file whose first bytes are those of a WAV file.
-pub(super) fn read(file: impl Read + Seek, name: &str) -> Result<Recording> {
+pub(super) fn read(file: File, name: &str) -> Result<Recording> {
     let mut input = BufReader::with_capacity(1 << 16, file);
     let wrong = |message: String| Error::format(name, message);
     let failed = |source| Error::io(name, source);
@@ -42,6 +48,9 @@ pub(super) fn read(file: impl Read + Seek, name: &str) -> Result<Recording> {
             b"fmt " => {
                 let mut body = Vec::new();
                 (&mut input).take(len).read_to_end(&mut body).map_err(failed)?;
+                if let Some((_, encoding)) = DECODED.iter().find(|(code, _)| Some(*code) == word(&body, 0)) {
+                    return codecs::read(input.into_inner(), name, encoding);
+                }
                 layout = Some(Layout::parse(&body).map_err(wrong)?);
                 skip(&mut input, len % 2).map_err(failed)?;
             }
@@ -61,6 +70,11 @@ pub(super) fn read(file: impl Read + Seek, name: &str) -> Result<Recording> {
     }
 }
 
+/// The 16-bit number at this position of a chunk.
+fn word(body: &[u8], at: usize) -> Option<u16> {
+    body.get(at..at + 2).map(|bytes| u16::from_le_bytes([bytes[0], bytes[1]]))
+}
+
 fn skip(input: &mut impl Seek, len: u64) -> std::io::Result<()> {
     input.seek_relative(i64::try_from(len).unwrap_or(i64::MAX))
 }
@@ -77,7 +91,7 @@ fn fill(input: &mut impl Read, buffer: &mut [u8]) -> std::io::Result<bool> {
 impl Layout {
     /// Reads a `fmt ` chunk. The error says what would be right.
     fn parse(body: &[u8]) -> std::result::Result<Self, String> {
-        let word = |at: usize| body.get(at..at + 2).map(|bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
+        let word = |at| word(body, at);
         let (Some(code), Some(channels), Some(align), Some(bits)) = (word(0), word(2), word(12), word(14)) else {
             return Err("the ‘fmt ’ chunk is shorter than 16 bytes".to_owned());
         };
@@ -85,20 +99,20 @@ impl Layout {
         // The first two bytes of the sub-format's GUID are its code.
         let code = if code == EXTENSIBLE { word(24).unwrap_or(code) } else { code };
         check_layout(sample_rate, channels.into())?;
-        let width = usize::from(bits.div_ceil(8));
+        let (least, width) = (usize::from(bits.div_ceil(8)), usize::from(align / channels));
         let known = match code {
-            PCM => (1..=4).contains(&width),
-            FLOAT => width == 4 || width == 8,
+            PCM => least > 0 && (least..=4).contains(&width),
+            FLOAT => least == width && (width == 4 || width == 8),
             _ => return Err(format!("samples are coded as {}: expected PCM or floats", coding(code))),
         };
-        if !known || usize::from(align) != width * usize::from(channels) {
+        if !known || align % channels != 0 {
             let stored = if code == FLOAT { "floats" } else { "integers" };
             return Err(format!(
                 "samples are {stored} of {bits} bits, {align} bytes a frame of {channels} channels: expected integers of \
                  8, 16, 24 or 32 bits, or floats of 32 or 64"
             ));
         }
-        Ok(Self { float: code == FLOAT, channels: channels.into(), sample_rate, width })
+        Ok(Self { float: code == FLOAT, channels: channels.into(), sample_rate, width, padded: least < width })
     }
 
     /// Reads a `data` chunk of `len` bytes, or as much of it as the file has.
@@ -122,6 +136,9 @@ impl Layout {
             for (channel, bytes) in channels.iter_mut().zip(frame.chunks(self.width)) {
                 channel.push(self.decode(bytes));
             }
+        }
+        if self.padded {
+            raise(&mut channels, self.width);
         }
         let (found, told) = (channels[0].len() as u64, len / frame_len as u64);
         if left_open {
@@ -150,15 +167,18 @@ impl Layout {
     }
 }
 
+/// Raises padded integers to full scale if their padding is above them, as some programs write it, and not below. They are padded
+/// below if the lowest byte is always 0, and also if a number needs the highest one.
+fn raise(channels: &mut [Vec<f32>], width: usize) {
+    let lowest = 256.0 / f32::powi(2.0, 8 * width as i32 - 1);
+    let mut samples = channels.iter().flatten();
+    let is_below = channels.iter().flatten().all(|sample| sample % lowest == 0.0);
+    if !is_below && samples.all(|sample| (-1.0 / 256.0..1.0 / 256.0).contains(sample)) {
+        channels.iter_mut().flatten().for_each(|sample| *sample *= 256.0);
+    }
+}
+
 /// The name of an encoding that cannot be read.
 fn coding(code: u16) -> String {
-    let name = match code {
-        2 => "MS ADPCM",
-        6 => "A-law",
-        7 => "µ-law",
-        0x11 => "IMA ADPCM",
-        0x55 => "MP3",
-        _ => return format!("format {code}"),
-    };
-    name.to_owned()
+    if code == 0x55 { "MP3".to_owned() } else { format!("format {code}") }
 }
