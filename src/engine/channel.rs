@@ -114,7 +114,7 @@ impl Channel {
         {
             let gain = self.volume * self.volume * self.expression * self.expression;
             // A pan leaves the sides of a sound apart, as a balance does.
-            self.gain.aim(gain, (self.pan + self.balance - 0.5).clamp(0.0, 1.0));
+            self.gain.aim(gain, (self.pan + (self.balance - 0.5)).clamp(0.0, 1.0));
         }
     }
 
