@@ -96,6 +96,22 @@ const NAMES: &[Name] = &[
         false,
     ),
     plain("lenient", |request, value| put(&mut request.reading.lenient, yes(value))),
+    number(
+        "tempo",
+        |request, value| put(&mut request.reading.tempo, quantity::tempo(value)),
+        quantity::tempo,
+        quantity::TEMPOS,
+        false,
+    ),
+    number(
+        "transpose",
+        |request, value| put(&mut request.reading.transpose, quantity::transpose(value)),
+        |text| quantity::transpose(text).map(f64::from),
+        (-60.0, 60.0),
+        true,
+    ),
+    plain("solo", |request, value| channels(&mut request.reading.solo, value)),
+    plain("mute", |request, value| channels(&mut request.reading.mute, value)),
     plain("preset", |request, value| put(&mut request.sound.preset, Ok(Some(value.into())))),
     plain("channel", |request, value| add(&mut request.sound.channels, quantity::channel(value))),
     plain("programs", |request, value| put(&mut request.sound.programs, Ok(value.into()))),
@@ -143,6 +159,11 @@ fn put<T>(place: &mut T, value: Result<T, String>) -> Result<(), String> {
 
 fn add<T>(list: &mut Vec<T>, value: Result<T, String>) -> Result<(), String> {
     value.map(|value| list.push(value))
+}
+
+/// Adds channels that are separated by commas.
+fn channels(list: &mut Vec<u8>, text: &str) -> Result<(), String> {
+    text.split(',').try_for_each(|channel| add(list, quantity::whole(1..=16)(channel)))
 }
 
 fn velocity(text: &str) -> Result<u8, String> {

@@ -81,6 +81,26 @@ pub fn seconds(text: &str) -> Result<f64, String> {
     number(text, &[("", 1.0), ("s", 1.0), ("ms", 1e-3)], 0.0..=LONGEST, " s")
 }
 
+/// Smallest and largest factor of a song’s tempo: beyond, notes are clicks or do not end.
+pub(super) const TEMPOS: (f64, f64) = (0.1, 10.0);
+
+/// Parses a factor of a song’s tempo, 0.1 to 10.
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn tempo(text: &str) -> Result<f64, String> {
+    number(text, &[("", 1.0), ("x", 1.0)], TEMPOS.0..=TEMPOS.1, "")
+}
+
+/// Parses the semitones by which a song is moved, −60 to 60.
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn transpose(text: &str) -> Result<i32, String> {
+    let semitones = number(text, &[("", 1.0)], -60.0..=60.0, " semitones")?;
+    if semitones == semitones.round() { Ok(semitones as i32) } else { Err(format!("‘{text}’ is no whole number")) }
+}
+
 /// Parses a tail: `auto`, `none` or seconds.
 ///
 /// # Errors

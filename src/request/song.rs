@@ -1,29 +1,93 @@
-//! The song of a request: a MIDI file, read strictly or leniently.
+//! The song of a request: a MIDI file, read strictly or leniently, and what of it is played.
 
+use crate::engine::EventKind;
+use crate::engine::banks::DRUM_CHANNEL;
 use crate::error::Result;
 use crate::io::{Inputs, Song};
+use crate::text::counted;
 use std::path::Path;
 
 /// Maximum number of repairs that are reported one by one.
 const MOST_REPAIRS: usize = 10;
 
-/// How a song is read.
-#[derive(Clone, Copy, Debug, Default)]
+/// How a song is read, and what of it is played.
+#[derive(Clone, Debug)]
 pub struct SongRequest {
     /// Whether to repair a MIDI file that strays from the standard.
     pub lenient: bool,
+    /// Factor of the tempo.
+    pub tempo: f64,
+    /// Semitones by which the notes of all channels but that of drums are moved.
+    pub transpose: i32,
+    /// The channels, from 1, whose notes are played; all if there are none.
+    pub solo: Vec<u8>,
+    /// The channels, from 1, whose notes are left out.
+    pub mute: Vec<u8>,
+}
+
+impl Default for SongRequest {
+    fn default() -> Self {
+        Self { lenient: false, tempo: 1.0, transpose: 0, solo: Vec::new(), mute: Vec::new() }
+    }
 }
 
 impl SongRequest {
-    /// Reads the song; `-` is stdin. `warn` is called for each repair.
+    /// Reads the song; `-` is stdin. `warn` is called for each repair, and for notes that cannot be played.
     ///
     /// # Errors
     /// As [`Song::read`].
     pub fn read(&self, path: &Path, inputs: &mut Inputs, warn: &mut dyn FnMut(&str)) -> Result<Song> {
-        if path == Path::new("-") {
-            return self.parse(inputs.stdin()?.lock(), "stdin", warn);
+        let mut song = if path == Path::new("-") {
+            self.parse(inputs.stdin()?.lock(), "stdin", warn)?
+        } else {
+            self.parse(inputs.open(path)?, &path.display().to_string(), warn)?
+        };
+        self.select(&mut song);
+        self.transpose(&mut song, warn);
+        self.stretch(&mut song);
+        Ok(song)
+    }
+
+    /// Leaves out the notes of channels that are not to be heard. Their controllers stay, since MPE’s master channels have some for
+    /// others.
+    fn select(&self, song: &mut Song) {
+        let is_heard = |channel: u8| {
+            let number = channel + 1;
+            (self.solo.is_empty() || self.solo.contains(&number)) && !self.mute.contains(&number)
+        };
+        song.events.retain(|event| !matches!(event.kind, EventKind::NoteOn { .. }) || is_heard(event.channel));
+    }
+
+    fn transpose(&self, song: &mut Song, warn: &mut dyn FnMut(&str)) {
+        let mut beyond = 0;
+        song.events.retain_mut(|event| {
+            let (EventKind::NoteOn { key, .. } | EventKind::NoteOff { key, .. } | EventKind::PolyPressure { key, .. }) =
+                &mut event.kind
+            else {
+                return true;
+            };
+            let moved = i32::from(*key) + if event.channel == DRUM_CHANNEL { 0 } else { self.transpose };
+            let Some(there) = u8::try_from(moved).ok().filter(|key| *key < 128) else {
+                beyond += usize::from(matches!(event.kind, EventKind::NoteOn { .. }));
+                return false;
+            };
+            *key = there;
+            true
+        });
+        if beyond > 0 {
+            let notes = counted(beyond, "note");
+            warn(&format!("--transpose {} takes {notes} beyond the keyboard: left out", self.transpose));
         }
-        self.parse(inputs.open(path)?, &path.display().to_string(), warn)
+    }
+
+    fn stretch(&self, song: &mut Song) {
+        for event in &mut song.events {
+            event.seconds /= self.tempo;
+            if let EventKind::Tempo(beats_per_minute) = &mut event.kind {
+                *beats_per_minute *= self.tempo as f32;
+            }
+        }
+        song.seconds /= self.tempo;
     }
 
     fn parse(&self, reader: impl std::io::Read, origin: &str, warn: &mut dyn FnMut(&str)) -> Result<Song> {

@@ -57,6 +57,40 @@ fn a_song_without_notes_is_told() {
 }
 
 #[test]
+fn parts_of_a_song_are_played_faster_or_higher() {
+    let sandbox = Sandbox::new();
+    let drum = note_on(0, 9, 40);
+    let write = |name: &str, key: u8, gap: u32, notes: &[TrackEvent<'static>]| {
+        let off = midi(gap, 0, MidiMessage::NoteOff { key: key.into(), vel: 0.into() });
+        sandbox.write(name, song(&[&[note_on(0, 0, key)], notes, &[off, end(gap)]].concat()));
+    };
+    write("whole.mid", 60, 480, &[note_on(0, 2, 50), drum]);
+    write("lead.mid", 60, 480, &[]);
+    write("fast.mid", 60, 240, &[]);
+    write("high.mid", 67, 480, &[drum]);
+    let render = |args: &str| {
+        sandbox.succeeds(&format!("render {args} --bits 32f --force -o out.wav"));
+        sandbox.read("out.wav")
+    };
+    assert!(render("whole.mid --solo 1") == render("lead.mid"));
+    assert!(render("whole.mid --mute 3,10") == render("lead.mid"));
+    assert!(render("whole.mid --solo 1,3 --mute 3 --tempo 2") == render("fast.mid"));
+    assert!(render("whole.mid --mute 3 --transpose 7") == render("high.mid"));
+    let told = said(&sandbox, "render whole.mid --transpose 60 --solo 1,3 --tail none --force -o out.wav");
+    assert!(!told.contains("beyond"), "{told}");
+    write("top.mid", 100, 480, &[]);
+    let told = said(&sandbox, "render top.mid --transpose 28 --tail none --force -o out.wav");
+    assert!(told.contains("--transpose 28 takes 1 note beyond the keyboard: left out"), "{told}");
+    for (args, message) in [
+        ("--tempo 0", "0.1 to 10"),
+        ("--transpose 0.5", "‘0.5’ is no whole number"),
+        ("--solo 17", "17 is out of range: expected 1 to 16"),
+    ] {
+        sandbox.fails(&format!("render lead.mid {args} -o no.wav"), 2, message);
+    }
+}
+
+#[test]
 fn what_is_no_midi_file_is_called_what_it_is() {
     let sandbox = Sandbox::new();
     sandbox.succeeds("render --note 60 --length 0.1 --tail none -o sound.wav");

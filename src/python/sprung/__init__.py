@@ -189,7 +189,8 @@ def render(
     """Renders notes, or a MIDI file, and gives its samples as 32-bit floats.
 
     The options are those of ``sprung render``: ``velocity``, ``length``, ``tail``, ``rate``, ``seed``, ``mono``,
-    ``gain_db``, ``mix_gain_db``, ``normalize``, ``scale``, ``keymap``, ``input``, ``programs``, ``lenient``.
+    ``gain_db``, ``mix_gain_db``, ``normalize``, ``scale``, ``keymap``, ``input``, ``programs``, ``lenient``,
+    ``tempo``, ``transpose``, ``solo``, ``mute``.
     """
     with ExitStack() as stack:
         given: dict[str, Any] = dict(options)
