@@ -36,8 +36,6 @@
 mod bands;
 mod decay;
 mod half_band;
-#[allow(clippy::needless_range_loop, reason = "kernels index several arrays in step")]
-mod kernel;
 mod material;
 mod modes;
 mod overdrive;

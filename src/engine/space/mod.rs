@@ -180,10 +180,6 @@ impl Space {
         if !self.is_on {
             return;
         }
-        if let Some(resonant) = &mut self.resonant {
-            resonant.strings.skip(frames);
-            resonant.reverb.skip(frames);
-        }
         self.tremolo.skip(frames);
         self.tone.skip(frames);
     }
