@@ -46,9 +46,6 @@ impl Band {
     fn set(&mut self, now: Slowest) {
         self.now = now;
         self.per_tick = exp(now.ln_radius * BODY_TICK as f64);
-        if !now.is_heard {
-            self.amplitude = 0.0;
-        }
     }
 }
 
@@ -148,9 +145,10 @@ impl Bands {
         if sum > 0.0 { 1.0 / sqrt(sum) } else { 0.0 }
     }
 
-    /// Updates the bounds after a control tick whose input had the summed magnitudes `input`.
+    /// Updates the bounds after a control tick whose input had the summed magnitudes `input`. Of bands that are not audible too:
+    /// if they become so, the head of the response makes this input heard.
     pub(super) fn tick(&mut self, input: f64) {
-        for band in self.bands.iter_mut().filter(|band| band.now.is_heard) {
+        for band in &mut self.bands {
             band.amplitude = band.amplitude * band.per_tick + input * band.drive;
         }
     }

@@ -3,7 +3,7 @@
 /// Frames of a control tick of a body.
 pub(super) const BODY_TICK: usize = 64;
 
-/// Counts frames since a processor was created or reset, so that control ticks fall on the same frames for all block sizes.
+/// Counts frames since a processor was created, reset or woken, so that control ticks fall on the same frames for all block sizes.
 /// Real-time safe.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Ticks<const TICK: u64> {

@@ -221,6 +221,42 @@ fn nothing_clicks() {
     assert!(turned < 1.05 * own && left != plain, "{turned}, {own}");
 }
 
+/// What of a signal is far above 2 kHz, relative to all of it, in dB: eight differences.
+fn above(samples: &[f32]) -> f64 {
+    let mut high: Vec<f64> = samples.iter().map(|sample| f64::from(*sample)).collect();
+    for _ in 0..8 {
+        high = high.windows(2).map(|pair| 0.5 * (pair[1] - pair[0])).collect();
+    }
+    let level = |samples: &[f64]| (samples.iter().map(|x| x * x).sum::<f64>() / samples.len() as f64).sqrt();
+    decibels(level(&high) / rms(samples))
+}
+
+/// While pitch and decay move, nothing is heard where there are no modes.
+#[test]
+fn moves_are_smooth() {
+    let modes = Plate { length: 0.9, width: 0.5, top: 2000.0, ..Plate::default() }.modes();
+    let decay = Decay { low: 2.0, high: 1.0 };
+    let mut rings = reverb(&modes, decay, 1.0);
+    let [mut left, mut right] = impulse(24_000);
+    rings.process(&mut left, &mut right);
+    type Turn = fn(&mut ModalReverb);
+    let turns: [(&str, f64, Turn); 4] = [
+        ("a semitone", -95.0, |reverb| reverb.set_pitch(1.06)),
+        ("a fifth", -95.0, |reverb| reverb.set_pitch(1.5)),
+        ("an octave", -95.0, |reverb| reverb.set_pitch(0.5)),
+        ("decay", -95.0, |reverb| reverb.set_decay(Decay { low: 0.4, high: 0.2 })),
+    ];
+    for (name, most, turn) in turns {
+        let mut turned = rings.clone();
+        turn(&mut turned);
+        let [mut left, mut right] = [vec![0.0; 4000], vec![0.0; 4000]];
+        turned.process(&mut left, &mut right);
+        let found = above(&left);
+        println!("{name}: {found:.1} dB");
+        assert!(found < most, "{name}: {found} dB");
+    }
+}
+
 /// A body that is switched on while input sounds is not excited by a sudden onset.
 #[test]
 fn what_sounds_already_comes_in_gently() {

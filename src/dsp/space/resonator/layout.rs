@@ -73,8 +73,8 @@ pub(super) struct Layout {
 impl Layout {
     /// An empty layout with room for some modes at every pitch.
     pub(super) fn with_room(modes: usize, frames: usize) -> Self {
-        // Where fewer modes than fill a block are within a span, a block ends with the span.
-        let blocks = (modes / LANES + frames + 2).min(modes);
+        // Where fewer modes than fill a block are within a span, a block ends with the span: at most two for each grid step.
+        let blocks = (modes / LANES + 2 * frames + 2).min(modes);
         let mut starts = Vec::with_capacity(blocks + 1);
         starts.push(0);
         let groups = Vec::with_capacity(blocks);

@@ -8,6 +8,7 @@ mod layout;
 #[allow(clippy::needless_range_loop, reason = "kernels index several arrays in step")]
 mod masses;
 mod modes;
+mod process;
 mod sums;
 mod tail;
 #[allow(clippy::needless_range_loop, reason = "several arrays are indexed in step")]
@@ -203,57 +204,6 @@ impl Resonator {
         self.bands.tick(input);
     }
 
-    /// Does the work of a control tick. Call it before the tick's first frame.
-    pub(super) fn work(&mut self) {
-        let (slice, slices) = (self.frame / BODY_TICK, self.block / BODY_TICK);
-        if slice == 0 {
-            self.begin_block();
-        }
-        // The transforms of the first and the last slice take about as long as the masses in one of the others.
-        let (parts, is_last) = (slices.saturating_sub(2).max(1), slice + 1 == slices);
-        self.tail.work(if is_last { parts } else { slice.min(parts) }, parts);
-        if is_last {
-            self.finish_block();
-        }
-        let ticks = slices + slice;
-        let tail = [0, 1].map(|side: usize| &self.tails[0][side][self.frame..]);
-        self.heads[0].begin_tick(self.instructions, &mut self.past, ticks, tail);
-        if self.fades {
-            self.heads[1].begin_tick(self.instructions, &mut self.past, ticks, tail);
-        }
-    }
-
-    fn begin_block(&mut self) {
-        self.tails.swap(0, 1);
-        self.fades = self.is_changing;
-        if self.fades {
-            self.heads.rotate_right(1);
-            self.gains[0] = self.gains[1];
-        }
-        let next = Some(self.wanted).filter(|wanted| self.given != Some(*wanted));
-        self.is_changing = next.is_some();
-        if self.is_changing {
-            (self.given, self.gains[1]) = (next, self.noise_gain());
-        } else if !self.fades {
-            self.bands.settle();
-        }
-        self.tail.begin(&self.input, next);
-    }
-
-    fn finish_block(&mut self) {
-        let Self { tail, tails: [_, next], former, parts, .. } = self;
-        if !self.is_changing {
-            return tail.finish(next, None);
-        }
-        tail.finish(next, Some((former, parts)));
-        for (next, former) in next.iter_mut().zip(former) {
-            for (n, (next, former)) in next.iter_mut().zip(former).take(SMOOTH).enumerate() {
-                *next = *former + (*next - *former) * smooth(n, SMOOTH);
-            }
-        }
-        self.heads[2].set(self.instructions, parts, &mut self.past);
-    }
-
     /// Measures the energy, and sets masses that have nearly stopped to rest. Call it at the beginning of a block, before
     /// [`Resonator::work`], if the body had no input in the block before.
     pub(super) fn measure(&mut self) {
@@ -267,32 +217,6 @@ impl Resonator {
             self.bands.measured(index, energy);
         }
         self.tail.rest_from(last);
-    }
-
-    /// Renders some frames of a control tick, and returns the outputs of the pick-ups.
-    pub(super) fn render(&mut self, input: &[f32]) -> [&[f32]; 2] {
-        let from = self.frame % BODY_TICK;
-        let to = (from + input.len()).min(BODY_TICK);
-        let input = &input[..to - from];
-        self.past.now[from..to].copy_from_slice(input);
-        self.input[self.frame..][..input.len()].copy_from_slice(input);
-        self.heads[0].render(self.instructions, &self.past, from, to, &mut self.out);
-        if self.fades {
-            let mut former = [[0.0; BODY_TICK]; 2];
-            self.heads[1].render(self.instructions, &self.past, from, to, &mut former);
-            for (out, former) in self.out.iter_mut().zip(&former) {
-                for n in from..to {
-                    out[n] = former[n] + (out[n] - former[n]) * smooth(self.frame + n - from, self.block);
-                }
-            }
-        }
-        self.frame += input.len();
-        if to == BODY_TICK {
-            self.past.end_tick(self.instructions);
-            self.frame %= self.block;
-        }
-        let [left, right] = &self.out;
-        [&left[from..to], &right[from..to]]
     }
 
     /// Upper bound of the output of either pick-up, after further input whose magnitudes sum to `input`.
@@ -319,16 +243,6 @@ impl Resonator {
         (self.is_changing, self.fades) = (false, false);
         self.bands.rest();
     }
-}
-
-/// Frames in which the tail fades over to its new pitch: they make a bend of what would be a kink. Half as many let 10 dB more
-/// through above 15 kHz.
-const SMOOTH: usize = 64;
-
-/// A fade from 0 to 1 over some frames, whose slope has no jumps.
-fn smooth(frame: usize, frames: usize) -> f32 {
-    let share = frame as f32 / frames as f32;
-    share * share * (3.0 - 2.0 * share)
 }
 
 /// Frames of a block: 11 ms. Shorter ones turn the masses more often, longer ones have a longer head, and their taps have to

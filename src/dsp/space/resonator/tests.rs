@@ -3,7 +3,7 @@
 use super::*;
 use crate::dsp::random::{key, uniform};
 use crate::dsp::space::{BodyMode, Plate, Room, Spring, Strings};
-use libm::{cos, exp, log10, sin};
+use libm::{cos, exp, exp2, log10, sin};
 use std::f64::consts::{LN_10, TAU};
 
 /// An impulse, and a tenth of a second of noise after some frames.
@@ -68,23 +68,87 @@ fn difference(modes: &ModeSet, decay: Decay, pitch: f64, rate: f64, input: &[f32
     20.0 * log10(most / loudest)
 }
 
+/// A random body of some hundred modes.
+fn random_body(next: &mut dyn FnMut() -> f64) -> ModeSet {
+    let count = 16 + (200.0 * (1.0 + next())) as usize;
+    let mode =
+        |_| BodyMode { frequency: 20.0 * exp2(5.0 * (1.0 + next())), drive: next(), left: next(), right: next() };
+    ModeSet::new((0..count).map(mode).collect::<Vec<_>>())
+}
+
+/// A sequence of random numbers from −1 to 1.
+fn numbers(seed: u64) -> impl FnMut() -> f64 {
+    let (stream, mut n) = (key(19, seed), 0);
+    move || {
+        n += 1;
+        f64::from(uniform(stream, n))
+    }
+}
+
+#[test]
+fn random_bodies_are_exact() {
+    for seed in 0..24 {
+        let mut next = numbers(seed);
+        let modes = random_body(&mut next);
+        // All of the range.
+        let mut t60 = || 0.05 * exp2(4.6 * (1.0 + next()));
+        let decay = Decay { low: t60(), high: t60() };
+        let (pitch, rate) =
+            (exp2(2.0 * next()), [8000.0, 22_050.0, 44_100.0, 48_000.0, 67_000.0, 192_000.0][seed as usize % 6]);
+        let found = difference(&modes, decay, pitch, rate, &signal(8000, 500..3000));
+        println!("{} modes, {decay:?}, pitch {pitch:.2} at {rate} Hz: {found:.1} dB", modes.len());
+        assert!(found < -100.0, "seed {seed}: {found} dB");
+    }
+}
+
+#[test]
+fn a_plate_is_exact() {
+    let found =
+        difference(&Plate::default().modes(), Decay { low: 3.0, high: 1.0 }, 1.0, 48_000.0, &signal(4000, 500..3000));
+    assert!(found < -105.0, "{found} dB");
+}
+
+/// Whether pitch and decay moved in silence or were set at rest makes no difference.
+#[test]
+fn moved_bodies_are_those_made_so() {
+    for (pitch, low) in [(1.0, 0.2), (1.9, 1.0), (0.4, 0.1), (30.0, 2.0)] {
+        let (modes, decay) = (random_body(&mut numbers(3)), Decay { low, high: 0.3 });
+        let mut made = Resonator::new(&modes, decay, 48_000.0);
+        made.tune(pitch);
+        let mut moved = Resonator::new(&modes, Decay { low: 1.0, high: 1.0 }, 48_000.0);
+        moved.prepare();
+        moved.tune(pitch);
+        moved.set_decay(decay);
+        for _ in 0..3 * moved.block / BODY_TICK {
+            moved.work();
+            moved.render(&[0.0; BODY_TICK]);
+        }
+        assert!(!moved.is_changing());
+        let input = signal(4000, 500..2000);
+        assert!(played(&mut made, &input) == played(&mut moved, &input), "pitch {pitch}, {low} s");
+    }
+}
+
+/// Of springs, only T60s are tried with which an echo arrives before it has decayed: with shorter ones, the loudest frame is
+/// itself far below the masses, whose outputs cancel before an echo.
 #[test]
 #[ignore = "takes minutes"]
 fn bodies_are_exact_at_all_settings() {
+    let all = [[3.0, 1.0], [30.0, 10.0], [1.0, 30.0], [0.3, 0.2], [0.15, 0.1], [0.05, 0.05], [0.05, 30.0]];
     let bodies = [
-        ("plate", Plate::default().modes()),
-        ("room", Room::default().modes()),
-        ("spring", Spring::default().modes()),
-        ("strings", Strings::new([65.4, 98.0, 220.0, 277.18]).modes()),
+        ("plate", Plate::default().modes(), &all[..]),
+        ("room", Room::default().modes(), &all[..]),
+        ("spring", Spring::default().modes(), &all[..4]),
+        ("strings", Strings::new([65.4, 98.0, 220.0, 277.18]).modes(), &all[..]),
     ];
     let mut worst = f64::MIN;
-    for (name, modes) in &bodies {
-        for [low, high] in [[3.0, 1.0], [30.0, 10.0], [1.0, 30.0], [0.3, 0.2], [0.15, 0.1], [0.05, 0.05]] {
-            for (pitch, rate) in
-                [(1.0, 48_000.0), (4.0, 48_000.0), (0.2, 44_100.0), (1.0, 8_000.0), (1.0, 96_000.0), (1.7, 67_000.0)]
-            {
-                let input = signal(24_000, 3000..10_000);
-                let found = difference(modes, Decay { low, high }, pitch, rate, &input);
+    for (name, modes, decays) in &bodies {
+        for [low, high] in *decays {
+            let rates =
+                [(1.0, 48_000.0), (4.0, 48_000.0), (0.2, 44_100.0), (1.0, 8000.0), (1.0, 96_000.0), (1.7, 67_000.0)];
+            for (pitch, rate) in rates {
+                let decay = Decay { low: *low, high: *high };
+                let found = difference(modes, decay, pitch, rate, &signal(24_000, 3000..10_000));
                 println!("{name}, {low} and {high} s, pitch {pitch} at {rate} Hz: {found:.1} dB");
                 worst = worst.max(found);
             }

@@ -57,24 +57,30 @@ impl ModalReverb {
 
     fn render(&mut self, left: &mut [f32], right: &mut [f32]) {
         let mut input = [0.0; BODY_TICK];
-        let is_driven = !self.drive.is_moving();
-        for (n, ((left, right), input)) in left.iter().zip(&*right).zip(&mut input).enumerate() {
-            let sum = held(0.5 * (left + right)) * if is_driven { 1.0 } else { self.drive.after(n) };
-            let heard = if sum.abs() >= FAINTEST_INPUT { sum } else { 0.0 };
+        for ((left, right), input) in left.iter().zip(&*right).zip(&mut input) {
+            *input = held(0.5 * (left + right));
+        }
+        let frames = left.len().min(BODY_TICK);
+        let input = &mut input[..frames];
+        if self.drive.is_moving() {
+            input.iter_mut().enumerate().for_each(|(n, input)| *input *= self.drive.after(n));
+        }
+        for input in &mut *input {
+            let heard = if input.abs() >= FAINTEST_INPUT { *input } else { 0.0 };
             self.silent_frames = if heard == 0.0 { self.silent_frames.saturating_add(1) } else { 0 };
             self.input += f64::from(heard.abs());
             *input = self.line.next(heard);
         }
-        let frames = left.len().min(BODY_TICK);
-        let [wet_left, wet_right] = self.body.render(&input[..frames]);
-        let moving = self.dry.is_moving() || self.wet.is_moving();
-        let (mut dry, mut wet) = (self.dry.after(0), self.wet.after(0));
-        for i in 0..frames {
-            if moving {
-                (dry, wet) = (self.dry.after(i), self.wet.after(i));
+        let [wet_left, wet_right] = self.body.render(input);
+        for (side, wet_side) in [(left, wet_left), (right, wet_right)] {
+            if self.dry.is_moving() || self.wet.is_moving() {
+                for (n, (side, wet_side)) in side.iter_mut().zip(wet_side).enumerate() {
+                    *side = *side * self.dry.after(n) + wet_side * self.wet.after(n);
+                }
+            } else {
+                let (dry, wet) = (self.dry.after(0), self.wet.after(0));
+                side.iter_mut().zip(wet_side).for_each(|(side, wet_side)| *side = *side * dry + wet_side * wet);
             }
-            left[i] = left[i] * dry + wet_left[i] * wet;
-            right[i] = right[i] * dry + wet_right[i] * wet;
         }
         self.drive.advance(frames);
         self.dry.advance(frames);
