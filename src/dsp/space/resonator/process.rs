@@ -10,9 +10,12 @@ impl Resonator {
         if slice == 0 {
             self.begin_block();
         }
-        // The transforms of the first and the last slice take about as long as the masses in one of the others.
-        let (parts, is_last) = (slices.saturating_sub(2).max(1), slice + 1 == slices);
-        self.tail.work(if is_last { parts } else { slice.min(parts) }, parts);
+        // The transforms of the first and the last slice take about as long as the masses in one of the others; during a change,
+        // those of the first take little, and the last has more of them.
+        let is_last = slice + 1 == slices;
+        let (part, parts) = if self.is_changing { (slice + 1, slices - 1) } else { (slice, slices.saturating_sub(2)) };
+        let parts = parts.max(1);
+        self.tail.work(if is_last { parts } else { part.min(parts) }, parts);
         if is_last {
             self.finish_block();
         }

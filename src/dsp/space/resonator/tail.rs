@@ -126,6 +126,9 @@ impl Tail {
             instructions.run(Play { blocks, groups: &groups[groups.len() - 1..], tables, step, input, out });
         }
         next_layout.take_over(held);
+        if self.live == 0 {
+            return;
+        }
         let Layout { blocks, groups, .. } = &mut *next_layout;
         let groups = &groups[groups.len() - 1..];
         instructions.run(Play { blocks, groups, tables, step: Step::Stay, input, out });
@@ -134,7 +137,7 @@ impl Tail {
     /// Ends a block of work: writes the frames of the tail. During a change, it also writes the tail with the former coefficients
     /// and the head of the response in two parts.
     pub(super) fn finish(&mut self, tail: &mut Pair, change: Option<(&mut Pair, &mut [Pair; 2])>) {
-        let is_moving = self.live > 0 || self.driven;
+        let is_moving = self.live > 0;
         match is_moving {
             true => self.sums.collect(&self.out, false, tail),
             false => tail.iter_mut().for_each(|side| side.fill(0.0)),
