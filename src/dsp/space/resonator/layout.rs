@@ -175,10 +175,10 @@ impl Layout {
         }
     }
 
-    /// Gives the masses of the last group the amplitudes that were handed over.
-    pub(super) fn take_over(&mut self, held: &Pair) {
-        let Some(group) = self.groups.last() else { return };
-        for b in group.start as usize..group.end as usize {
+    /// Gives the masses of the groups from `first` on the amplitudes that were handed over.
+    pub(super) fn take_over(&mut self, first: usize, held: &Pair) {
+        let Some(group) = self.groups.get(first) else { return };
+        for b in group.start as usize..self.blocks.len() {
             let ([half_re, half_im], start) = (&self.halves[b], self.starts[b]);
             let [re, im] = &mut self.blocks[b].state;
             let (held_re, held_im) = (&held[0][start..start + LANES], &held[1][start..start + LANES]);

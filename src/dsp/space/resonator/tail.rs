@@ -111,27 +111,24 @@ impl Tail {
         if let Some(tuning) = self.next {
             self.layout.hand_over(&self.layout.groups[groups.start..live], &mut self.held);
             let ready = if part == parts { tuning.heard } else { self.layout.covered_by(end) };
-            while self.next_layout.add_group(self.instructions, &self.modes, &tuning, ready) {
-                self.begin_group();
-            }
+            let first = self.next_layout.groups.len();
+            while self.next_layout.add_group(self.instructions, &self.modes, &tuning, ready) {}
+            self.begin_groups(first);
         }
     }
 
-    /// The new head of the response, and the amplitudes that were handed over, for the last group of the next layout.
-    fn begin_group(&mut self) {
-        let Self { instructions, tables, next_layout, heads, held, input, out, .. } = self;
-        let [first, second] = heads;
-        for (step, out) in [(Step::Stay, first), (Step::Turn, second)] {
+    /// The new head of the response, and the amplitudes that were handed over, for the groups of the next layout from `first` on.
+    fn begin_groups(&mut self, first: usize) {
+        let Self { instructions, tables, next_layout, heads: [head, second], held, input, out, .. } = self;
+        for (step, out) in [(Step::Stay, head), (Step::Turn, second)] {
             let Layout { blocks, groups, .. } = &mut *next_layout;
-            instructions.run(Play { blocks, groups: &groups[groups.len() - 1..], tables, step, input, out });
+            instructions.run(Play { blocks, groups: &groups[first..], tables, step, input, out });
         }
-        next_layout.take_over(held);
-        if self.live == 0 {
-            return;
+        next_layout.take_over(first, held);
+        if self.live > 0 {
+            let Layout { blocks, groups, .. } = &mut *next_layout;
+            instructions.run(Play { blocks, groups: &groups[first..], tables, step: Step::Stay, input, out });
         }
-        let Layout { blocks, groups, .. } = &mut *next_layout;
-        let groups = &groups[groups.len() - 1..];
-        instructions.run(Play { blocks, groups, tables, step: Step::Stay, input, out });
     }
 
     /// Ends a block of work: writes the frames of the tail. During a change, it also writes the tail with the former coefficients
