@@ -1,14 +1,16 @@
-//! A plate reverb with all of its modes, compared with the driven mode bank in the same run.
+//! A plate reverb with all of its modes, compared with the driven mode bank and with smaller bodies in the same run.
 //!
-//! On every level of vector instructions. Elements are modes × frames, for plate and bank alike; `silence` is a whole
-//! block of a reverb that is idle.
+//! On every level of vector instructions. Elements are modes × frames, for plate and bank alike, and frames for the bodies;
+//! `silence` is a whole block of a reverb that is idle.
 
 #[allow(dead_code, reason = "shared with other benches")]
 mod struck;
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use sprung::dsp::random::{key, uniform};
-use sprung::dsp::space::{Decay, ModalReverb, Overdrive, Plate, Resonator, Tone, Tremolo, Width};
+use sprung::dsp::space::{
+    Decay, ModalReverb, Overdrive, Plate, Resonator, Room, Spring, Strings, Tone, Tremolo, Width,
+};
 use sprung::dsp::{CONTROL_FRAMES, Level};
 use std::time::Duration;
 use struck::{StruckBank, Work};
@@ -49,6 +51,38 @@ fn plate_beside_bank(criterion: &mut Criterion) {
                     right.copy_from_slice(&input);
                     let blocks = left.chunks_mut(block).zip(right.chunks_mut(block));
                     blocks.for_each(|(left, right)| reverb.process(left, right));
+                    left[0]
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+/// The cost of bodies per frame, at rest and while their pitch moves.
+fn bodies(criterion: &mut Criterion) {
+    let input = noise();
+    let mut group = criterion.benchmark_group("bodies");
+    group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(FRAMES as u64));
+    for (name, modes) in [
+        ("plate", Plate::default().modes()),
+        ("room", Room::default().modes()),
+        ("springs", Spring::default().modes()),
+        ("strings", Strings::new([110.0, 165.0, 220.0, 277.18]).modes()),
+    ] {
+        for moves in [false, true] {
+            let mut reverb = ModalReverb::new(Resonator::new(&modes, DECAY, RATE));
+            reverb.set_mix(0.5);
+            let mut pitch = 1.0;
+            let id = BenchmarkId::new(name, if moves { "moving" } else { "at rest" });
+            group.bench_function(id, |bencher| {
+                let (mut left, mut right) = (input.clone(), input.clone());
+                bencher.iter(|| {
+                    left.copy_from_slice(&input);
+                    right.copy_from_slice(&input);
+                    pitch = if moves { 2.1 - pitch } else { pitch };
+                    reverb.set_pitch(pitch);
+                    reverb.process(&mut left, &mut right);
                     left[0]
                 });
             });
@@ -100,5 +134,5 @@ fn quick() -> Criterion {
     Criterion::default().warm_up_time(short / 3).measurement_time(short).sample_size(20).nresamples(2000)
 }
 
-criterion_group! { name = benches; config = quick(); targets = plate_beside_bank, effects }
+criterion_group! { name = benches; config = quick(); targets = plate_beside_bank, bodies, effects }
 criterion_main!(benches);

@@ -1,6 +1,9 @@
 //! The clock of a processor: it divides blocks of any size at control ticks of `TICK` frames.
 
-/// Counts frames since a processor was created or reset, so that control ticks fall on the same frames for all block sizes.
+/// Frames of a control tick of a body.
+pub(super) const BODY_TICK: usize = 64;
+
+/// Counts frames since a processor was created, reset or woken, so that control ticks fall on the same frames for all block sizes.
 /// Real-time safe.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Ticks<const TICK: u64> {
@@ -11,6 +14,11 @@ impl<const TICK: u64> Ticks<TICK> {
     /// Whether a control tick is due before the next frame.
     pub(super) fn is_due(self) -> bool {
         self.frame.is_multiple_of(TICK)
+    }
+
+    /// Whether no frame has passed.
+    pub(super) fn is_start(self) -> bool {
+        self.frame == 0
     }
 
     /// Whether the present control tick is one of every `ticks`-th.

@@ -1,10 +1,9 @@
 //! The bodies of spaces and of sympathetic strings, as tables of modes that all synths share.
 //!
-//! Turning a knob retunes a body or loads another table; it computes no modes. A resonator with enough room loads
-//! another table in place in 0.15 ms for a plate, and retunes to another ratio in 0.08 ms (a temporary program, on
-//! AVX-512). This happens on the audio thread, at the resonator's control ticks, so a song that changes the size has
-//! the same bits everywhere. While sound passes, a retuned body continues at its new pitch; another body starts when
-//! the previous one has faded out, after 20 ms.
+//! Turning a knob retunes a body or loads another table; it computes no modes. This happens on the audio thread, at the
+//! resonator's control ticks, so a song that changes the size has the same bits everywhere. While sound passes, a
+//! retuned body continues at its new pitch, and its work is divided into the ticks of a block; another body starts when
+//! the previous one has faded out, after 20 ms, and a resonator with enough room makes it within one tick.
 //!
 //! Rejected: making bodies with the sound and handing them over. A sound does not know the sample rate, each channel
 //! would need a state to be handed over with it, and a knob would need a thread that follows it. The price: a body has

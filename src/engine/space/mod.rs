@@ -1,16 +1,16 @@
 //! The effects after the voices of a synth: strings, tremolo, drive, tone, space and width, in series.
 //!
 //! A section that is off does not change the signal. A section that is on becomes idle when its content is below −120 dBFS and
-//! its input is silent. [`Space::skip`] then advances it by the frames that pass, with the same result as silent input. So the
-//! output does not depend on the block size, nor on the frame at which the silence is detected.
+//! its input is silent. [`Space::skip`] then advances what has a clock, with the same result as silent input. So the output
+//! does not depend on the block size, nor on the frame at which the silence is detected.
 //!
-//! Room for bodies is made outside the audio thread, 1 MB per synth: by `Synth::reserve_space`, or when a kit with a
+//! Room for bodies is made outside the audio thread, 4 MB per synth, of which a plate at rest uses 1 MB: by `Synth::reserve_space`, or when a kit with a
 //! body is set. Without room, bodies stay off. An ensemble makes room for each channel that starts with a body, and for
 //! all channels if one of its programs has a body. Each channel has its own effects, so sixteen channels with a plate
 //! take the time of sixteen plates.
 //!
-//! While an effect sleeps and no voice sounds, the control ticks and the motor of the tremolo continue. Settings move
-//! in 20 ms; while nothing sounds, they apply at once. Level and pan of the voices come before the effects, so the
+//! While an effect sleeps and no voice sounds, the motor of the tremolo continues. Settings move in 20 ms; while nothing
+//! sounds, they apply at once. Level and pan of the voices come before the effects, so the
 //! drive depends on `gain`. Tails are computed from effect to effect: while voices sound, the magnitudes of what they
 //! still send add up to at most their peak times the frames that they have left. The computed tail is an upper bound,
 //! and can be some T60s too long. Tests: `tests/engine/space/` for each effect, `tests/engine/behind_voices.rs` for synths and
@@ -179,10 +179,6 @@ impl Space {
     pub(crate) fn skip(&mut self, frames: usize) {
         if !self.is_on {
             return;
-        }
-        if let Some(resonant) = &mut self.resonant {
-            resonant.strings.skip(frames);
-            resonant.reverb.skip(frames);
         }
         self.tremolo.skip(frames);
         self.tone.skip(frames);

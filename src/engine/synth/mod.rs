@@ -113,7 +113,7 @@ impl Synth {
         self.instruments.reserve(sounds);
     }
 
-    /// Makes room for sympathetic strings and for any body of the space: 1 MB. Without room these stay off, unless a kit
+    /// Makes room for sympathetic strings and for any body of the space: 4 MB. Without room these stay off, unless a kit
     /// has them when it is set. Allocates; the first call in a process takes some 10 ms.
     pub fn reserve_space(&mut self) {
         self.space.reserve();

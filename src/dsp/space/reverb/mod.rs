@@ -4,12 +4,11 @@ mod process;
 mod tail;
 
 use super::decay::Decay;
-use super::kernel::FRAMES;
 use super::modes::ModeSet;
 use super::pre_delay::PreDelay;
 use super::resonator::Resonator;
 use super::smoothed::Smoothed;
-use super::ticks::Ticks;
+use super::ticks::{BODY_TICK, Ticks};
 use libm::{cos, sin};
 use std::f64::consts::FRAC_PI_2;
 
@@ -19,11 +18,8 @@ pub const LONGEST_PRE_DELAY: f64 = 0.25;
 /// Level at which a tail is over: −120 dBFS.
 const SILENCE: f64 = 1e-6;
 
-/// Ticks between two measurements of the energy.
+/// Fewest ticks between two measurements of the energy.
 const MEASURE_TICKS: u64 = 32;
-
-/// Ticks between two steps of a moving pitch.
-const PITCH_TICKS: u64 = 4;
 
 /// A stereo processor: the sum of both sides drives a [`Resonator`], whose outputs are added to the input.
 ///
@@ -40,7 +36,7 @@ pub struct ModalReverb {
     next_body: Option<&'static ModeSet>,
     pitch: Smoothed,
     line: PreDelay,
-    ticks: Ticks<{ FRAMES as u64 }>,
+    ticks: Ticks<{ BODY_TICK as u64 }>,
     /// Gain of the body's input. It is faded in when the body starts during a sound.
     drive: Smoothed,
     dry: Smoothed,
@@ -107,7 +103,6 @@ impl ModalReverb {
         self.levels = levels;
         if self.state == State::Off && levels[1] > 0.0 {
             // The dry signal may sound now.
-            self.ticks = Ticks::default();
             self.wake();
             self.fade_in();
         } else if self.state == State::Asleep {
@@ -120,18 +115,26 @@ impl ModalReverb {
     pub fn set_decay(&mut self, decay: Decay) {
         if decay != self.body.decay() {
             self.body.set_decay(decay);
-            match self.state {
-                State::Awake => self.move_levels(),
-                State::Asleep => self.jump_to_levels(),
-                State::Off => {}
+            if self.state == State::Asleep {
+                self.jump_to_levels();
             }
         }
     }
 
-    /// Wakes the reverb. The body first applies a decay that was set while it was at rest.
+    /// Wakes the reverb, and starts its clock. The body first applies what was set while it was at rest.
     fn wake(&mut self) {
-        self.state = State::Awake;
-        self.body.finish_damping();
+        (self.state, self.ticks) = (State::Awake, Ticks::default());
+        self.body.prepare();
+    }
+
+    /// Control ticks of a block of the body, at whose beginning its pitch moves.
+    fn block_ticks(&self) -> u64 {
+        self.body.block_frames() as u64 / BODY_TICK as u64
+    }
+
+    /// Control ticks between two measurements: whole blocks.
+    fn measure_ticks(&self) -> u64 {
+        self.block_ticks().max(MEASURE_TICKS)
     }
 
     /// Sets the pre-delay in seconds, up to [`LONGEST_PRE_DELAY`]. Changes by a crossfade of 20 ms.
@@ -177,14 +180,9 @@ impl ModalReverb {
         self.state == State::Off && self.dry.rests_at(1.0)
     }
 
-    /// Whether silent input changes nothing but the clock: [`ModalReverb::skip`] does the same.
+    /// Whether silent input changes nothing.
     pub fn is_idle(&self) -> bool {
         self.state != State::Awake && !self.dry.is_moving()
-    }
-
-    /// Advances by frames of silence while it is idle. Real-time safe.
-    pub fn skip(&mut self, frames: usize) {
-        self.ticks.advance(frames);
     }
 
     /// Silences the body and ends all ramps.
@@ -192,7 +190,7 @@ impl ModalReverb {
         self.body.reset();
         self.finish();
         self.line.clear();
-        (self.ticks, self.input, self.silent_frames) = (Ticks::default(), 0.0, usize::MAX);
+        (self.input, self.silent_frames) = (0.0, usize::MAX);
         self.drive.jump(1.0);
         self.jump_to_levels();
         self.state = if self.levels[1] > 0.0 { State::Asleep } else { State::Off };
@@ -223,7 +221,7 @@ impl ModalReverb {
     fn move_levels(&mut self) {
         self.dry.set(self.levels[0]);
         let fades = self.next_body.is_some();
-        self.wet.set(if fades { 0.0 } else { self.levels[1] * self.body.noise_gain() });
+        self.wet.set(if fades { 0.0 } else { self.levels[1] * self.body.heard_noise_gain() });
     }
 
     fn jump_to_levels(&mut self) {

@@ -1,8 +1,7 @@
 //! The length of a reverb's tail, and upper bounds of its amplitude.
 
 use super::super::decay::Decay;
-use super::super::kernel::FRAMES;
-use super::{MEASURE_TICKS, ModalReverb, PITCH_TICKS, SILENCE, State};
+use super::{BODY_TICK, ModalReverb, SILENCE, State};
 
 /// Longer tails count as endless. In frames.
 const ENDLESS: u64 = 1 << 50;
@@ -25,9 +24,9 @@ impl ModalReverb {
         let reach = self.line.reach();
         let held = if frames > 0 { reach } else { reach.saturating_sub(self.silent_frames) } as u64;
         let mut moving = u64::from(self.wet.frames_left().max(self.dry.frames_left()));
-        if !self.is_still() {
-            // The wet level changes with the pitch and the body.
-            let steps = 2 * PITCH_TICKS * FRAMES as u64;
+        if !self.is_still() || self.body.is_changing() {
+            // The wet level changes when a change of the body is heard.
+            let steps = 2 * self.body.block_frames() as u64;
             moving = moving.max(self.pitch.frames_left().into()) + steps + u64::from(self.wet.frames());
         }
         let wet = self.loudest_wet();
@@ -46,10 +45,17 @@ impl ModalReverb {
         if end > ENDLESS {
             return u64::MAX;
         }
-        let mut ticks = self.ticks;
-        ticks.advance(end as usize);
+        let until_measured = match self.state {
+            State::Awake => {
+                let mut ticks = self.ticks;
+                ticks.advance(end as usize);
+                ticks.frames_until_every(self.measure_ticks())
+            }
+            // Input will start the clock.
+            _ => self.measure_ticks() * BODY_TICK as u64,
+        };
         // It falls asleep before the next frame.
-        end.saturating_add(ticks.frames_until_every(MEASURE_TICKS)).saturating_add(1)
+        end.saturating_add(until_measured).saturating_add(1)
     }
 
     /// Upper bound of the output from now on, if the magnitude of the input is at most `peak` on either side and its magnitudes
@@ -61,6 +67,8 @@ impl ModalReverb {
 
     /// The largest wet gain from now on.
     pub(super) fn loudest_wet(&self) -> f64 {
-        f64::from(self.wet.after(0).max(self.wet.target()))
+        // The level of a change that is not heard yet is still to come.
+        let wanted = if self.next_body.is_some() { 0.0 } else { self.levels[1] * self.body.noise_gain() };
+        f64::from(self.wet.after(0).max(self.wet.target()).max(wanted))
     }
 }
