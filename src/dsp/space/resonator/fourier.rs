@@ -200,9 +200,9 @@ mod tests {
             let (mut error, mut all) = (0.0, 0.0);
             for k in 0..size {
                 let mut exact = [0.0; 2];
-                for n in 0..size {
+                for (n, (re, im)) in given[0].iter().zip(&given[1]).enumerate() {
                     let angle = TAU * (k * n % size) as f64 / size as f64;
-                    let (re, im) = (f64::from(given[0][n]), f64::from(given[1][n]));
+                    let (re, im) = (f64::from(*re), f64::from(*im));
                     exact[0] += re * cos(angle) - im * sin(angle);
                     exact[1] += re * sin(angle) + im * cos(angle);
                 }
