@@ -170,7 +170,7 @@ impl Layout {
 /// Raises padded integers to full scale if their padding is above them, as some programs write it, and not below. They are padded
 /// below if the lowest byte is always 0, and also if a number needs the highest one.
 fn raise(channels: &mut [Vec<f32>], width: usize) {
-    let lowest = 256.0 / f32::powi(2.0, 8 * width as i32 - 1);
+    let lowest = 256.0 / (1_u64 << (8 * width - 1)) as f32;
     let mut samples = channels.iter().flatten();
     let is_below = channels.iter().flatten().all(|sample| sample % lowest == 0.0);
     if !is_below && samples.all(|sample| (-1.0 / 256.0..1.0 / 256.0).contains(sample)) {

@@ -151,11 +151,6 @@ impl Tail {
         self.done = 0;
     }
 
-    /// Whether any mass may move.
-    pub(super) fn is_moving(&self) -> bool {
-        self.live > 0
-    }
-
     /// Sum of the squared amplitudes of some modes at the beginning of the block, or an upper bound of it. Sets masses that have
     /// nearly stopped to rest. Call it before the work on a block begins.
     pub(super) fn measure(&mut self, modes: Range<usize>) -> f64 {
