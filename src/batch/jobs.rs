@@ -8,6 +8,8 @@ use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 
+/// U+FEFF in UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 /// Longest line in bytes.
 const LONGEST: u64 = 1 << 20;
 
@@ -85,14 +87,16 @@ impl<'a> Jobs<'a> {
             if text.len() as u64 > LONGEST {
                 return Err(self.fault(("line".to_owned(), "too long: expected at most 1 MiB".to_owned())));
             }
+            // Some editors begin a file with a byte order mark.
+            if self.line == 1 && text.starts_with(BYTE_ORDER_MARK) {
+                text.drain(..BYTE_ORDER_MARK.len());
+            }
             if !text.trim_ascii().is_empty() {
                 break;
             }
         }
         let text = str::from_utf8(&text);
         let text = text.map_err(|_| self.fault(("line".to_owned(), "expected UTF-8 text".to_owned())))?;
-        // Some editors begin a file with a byte order mark.
-        let text = if self.line == 1 { text.trim_start_matches('\u{feff}') } else { text };
         let template = Template::parse(text, self.batch).map_err(|fault| self.fault(fault))?;
         self.left = template.repeat;
         self.template = Some(template);

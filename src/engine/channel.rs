@@ -113,7 +113,7 @@ impl Channel {
             controller
         {
             let gain = self.volume * self.volume * self.expression * self.expression;
-            // A pan leaves the sides of a sound apart, as a balance does.
+            // A pan does not mix the sides of a sound, so it is a balance: both positions add up.
             self.gain.aim(gain, (self.pan + (self.balance - 0.5)).clamp(0.0, 1.0));
         }
     }
@@ -128,7 +128,8 @@ impl Channel {
         }
     }
 
-    /// Changes the selected registered parameter by a step: a semitone, but the finest one of fine tuning.
+    /// Changes the selected registered parameter by a step: a semitone, but the finest one of fine tuning. (RP-018 has cents for the
+    /// bend range, which most devices set in semitones.)
     fn step(&mut self, by: i32) {
         let is_fine = self.registered.number.1 == Registered::FINE as u8;
         self.enter(|entry| {

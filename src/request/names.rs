@@ -107,7 +107,7 @@ const NAMES: &[Name] = &[
         "transpose",
         |request, value| put(&mut request.reading.transpose, quantity::transpose(value)),
         |text| quantity::transpose(text).map(f64::from),
-        (-60.0, 60.0),
+        (-quantity::MOST_SEMITONES, quantity::MOST_SEMITONES),
         true,
     ),
     plain("solo", |request, value| channels(&mut request.reading.solo, value)),

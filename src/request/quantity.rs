@@ -92,13 +92,17 @@ pub fn tempo(text: &str) -> Result<f64, String> {
     number(text, &[("", 1.0), ("x", 1.0)], TEMPOS.0..=TEMPOS.1, "")
 }
 
+/// Most semitones by which a song is moved: five octaves.
+pub(super) const MOST_SEMITONES: f64 = 60.0;
+
 /// Parses the semitones by which a song is moved, −60 to 60.
 ///
 /// # Errors
 /// A message that says what would be right.
 pub fn transpose(text: &str) -> Result<i32, String> {
-    let semitones = number(text, &[("", 1.0)], -60.0..=60.0, " semitones")?;
-    if semitones == semitones.round() { Ok(semitones as i32) } else { Err(format!("‘{text}’ is no whole number")) }
+    let semitones = number(text, &[("", 1.0)], -MOST_SEMITONES..=MOST_SEMITONES, " semitones")?;
+    let is_whole = semitones == semitones.round();
+    if is_whole { Ok(semitones as i32) } else { Err(format!("‘{text}’: expected whole semitones, -60 to 60")) }
 }
 
 /// Parses a tail: `auto`, `none` or seconds.

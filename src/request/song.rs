@@ -15,7 +15,7 @@ const MOST_REPAIRS: usize = 10;
 pub struct SongRequest {
     /// Whether to repair a MIDI file that strays from the standard.
     pub lenient: bool,
-    /// Factor of the tempo.
+    /// Factor of the tempo, above 0.
     pub tempo: f64,
     /// Semitones by which the notes of all channels but that of drums are moved.
     pub transpose: i32,
@@ -66,7 +66,8 @@ impl SongRequest {
             else {
                 return true;
             };
-            let moved = i32::from(*key) + if event.channel == DRUM_CHANNEL { 0 } else { self.transpose };
+            let by = if event.channel == DRUM_CHANNEL { 0 } else { self.transpose };
+            let moved = i32::from(*key).saturating_add(by);
             let Some(there) = u8::try_from(moved).ok().filter(|key| *key < 128) else {
                 beyond += usize::from(matches!(event.kind, EventKind::NoteOn { .. }));
                 return false;

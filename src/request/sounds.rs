@@ -150,7 +150,7 @@ impl SoundRequest {
     /// and of channels and notes that stay silent.
     pub fn warn(&self, song: &Song, sounds: &Sounds, warn: &mut dyn FnMut(&str)) {
         if !song.events.iter().any(|event| matches!(event.kind, EventKind::NoteOn { .. })) {
-            warn("there are no notes in the song");
+            warn("there are no notes to play");
         }
         if let Some(list) = &sounds.list {
             programs::warn_of_missing(song, list, "what channels start with", warn);

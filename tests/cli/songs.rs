@@ -53,7 +53,7 @@ fn lenient_reading_plays_what_strict_reading_refuses() {
 fn a_song_without_notes_is_told() {
     let sandbox = Sandbox::new();
     sandbox.write("in.mid", song(&[end(1)]));
-    assert!(said(&sandbox, "render in.mid -o out.wav").contains("warning: there are no notes in the song"));
+    assert!(said(&sandbox, "render in.mid -o out.wav").contains("warning: there are no notes to play"));
 }
 
 #[test]
@@ -83,7 +83,7 @@ fn parts_of_a_song_are_played_faster_or_higher() {
     assert!(told.contains("--transpose 28 takes 1 note beyond the keyboard: left out"), "{told}");
     for (args, message) in [
         ("--tempo 0", "0.1 to 10"),
-        ("--transpose 0.5", "‘0.5’ is no whole number"),
+        ("--transpose 0.5", "‘0.5’: expected whole semitones, -60 to 60"),
         ("--solo 17", "17 is out of range: expected 1 to 16"),
     ] {
         sandbox.fails(&format!("render lead.mid {args} -o no.wav"), 2, message);

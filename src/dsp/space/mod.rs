@@ -37,7 +37,7 @@
 //! are above 15 kHz while the pitch moves by a fifth, where a bank whose coefficients jump leaves −81 dB; −128 and −100 dB by
 //! a semitone; −98 and −99 dB while T60 becomes a fifth, because the wet level ramps. While something moves, all ticks of a
 //! block but the last take equally long, about six times as long as at rest: the masses are laid out anew in groups of
-//! neighbours, and the head is computed anew. A bank took longer.
+//! neighbours, and the head is computed anew. The bank took longer at its worst tick.
 //!
 //! What was worse: convolution with the whole response (1,116 ns a frame for 30 s, and 70 MB; ringing modes cannot move);
 //! octaves at lower rates (at most three times, by calculation). Sparse bodies gain least: a bank of 320 modes took less time,

@@ -1,5 +1,6 @@
 //! The chunks of a MIDI file: its header and its tracks' bytes, in a plain file or inside a RIFF file (RMID).
 
+use super::fault::MOST_REPAIRS;
 use midly::Header;
 
 /// The chunks of a MIDI file. The contents of the tracks have not been examined.
@@ -38,7 +39,7 @@ impl<'a> Container<'a> {
     pub(super) fn open(file: &'a [u8], lenient: bool) -> Result<Self, String> {
         let mut repairs = Vec::new();
         let mut repair = |fault: String| {
-            if !lenient {
+            if !lenient || repairs.len() >= MOST_REPAIRS {
                 return Err(fault);
             }
             repairs.push(fault);
@@ -55,7 +56,9 @@ impl<'a> Container<'a> {
         let wanted = if declared == 0 { usize::MAX } else { declared };
         let mut tracks = Vec::new();
         while tracks.len() < wanted {
-            if lenient && let Some(junk) = junk(&file[at.min(file.len())..]) {
+            let rest = &file[at.min(file.len())..];
+            if lenient && !starts_chunk(rest) {
+                let Some(junk) = find(rest, b"MTrk") else { break };
                 repair(format!("after track {}, byte {at}: {junk} bytes belong to no track: left out", tracks.len()))?;
                 at += junk;
             }
@@ -145,21 +148,19 @@ fn starts_chunk(file: &[u8]) -> bool {
         .is_some_and(|chunk| &chunk.id == b"MTrk" || chunk.id.is_ascii() && chunk.promised == chunk.bytes.len())
 }
 
-/// Number of bytes before the next track, if what stands there is no chunk.
-fn junk(file: &[u8]) -> Option<usize> {
-    if starts_chunk(file) { None } else { find(file, b"MTrk") }
-}
-
 /// The length of the track at the start of `file`, if it is not the promised one.
 fn real_length(file: &[u8], promised: usize) -> Option<usize> {
     let (inside, after) = file.split_at(promised.min(file.len()));
     let swallowed = find(inside, &[END_MARK, b"MTrk"].concat());
     let goes_on = !after.is_empty() && !starts_chunk(after) && !inside.ends_with(END_MARK);
     let end = swallowed.or_else(|| {
+        if !goes_on {
+            return None;
+        }
         let own = inside.len() + find(after, b"MTrk").unwrap_or(after.len());
         // The end mark may begin inside.
         let from = inside.len().saturating_sub(END_MARK.len() - 1);
-        find(&file[from..own], END_MARK).filter(|_| goes_on).map(|end| from + end)
+        find(&file[from..own], END_MARK).map(|end| from + end)
     });
     end.map(|end| end + END_MARK.len())
 }

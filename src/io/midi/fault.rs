@@ -1,5 +1,8 @@
 //! What can be wrong in a track, and where it continues, for error messages and for the repairs of lenient reading.
 
+/// Maximum number of repairs, counted by kind and track. A file with more is probably no MIDI file.
+pub(super) const MOST_REPAIRS: usize = 1000;
+
 /// Why an event or a track cannot be read as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fault {
@@ -18,7 +21,7 @@ pub(super) enum Fault {
     /// The tempo is 0.
     Tempo,
     /// The file ends after so many bytes of the track’s.
-    Whole([usize; 2]),
+    FileCutOff([usize; 2]),
 }
 
 /// A fault, and where the track continues.
@@ -92,7 +95,7 @@ impl std::fmt::Display for Fault {
             Self::Meta(0x54) => write!(f, "the SMPTE offset is no time of day"),
             Self::Meta(kind) => write!(f, "meta event {kind:#04x} has contents that it cannot have"),
             Self::Tempo => write!(f, "the tempo is 0 µs per quarter note: expected at least 1"),
-            Self::Whole([there, promised]) => {
+            Self::FileCutOff([there, promised]) => {
                 write!(f, "the file is cut off: {there} of the track's {promised} bytes are there")
             }
         }

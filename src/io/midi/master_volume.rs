@@ -5,16 +5,16 @@ use crate::engine::EventKind;
 use crate::engine::midi::controller::VOLUME;
 
 /// The channel of an event that sets the volume of all of them.
-pub(super) const ALL: u8 = 16;
+pub(super) const ALL_CHANNELS: u8 = 16;
 
 /// Replaces each master volume by channel volumes: a channel’s own times the master’s, as both have the same curve. The events are
 /// in order of time.
 pub(super) fn spread(events: Vec<(u64, u8, EventKind)>) -> Result<Vec<(u64, u8, EventKind)>, String> {
     let volume = |value| EventKind::Control { controller: VOLUME, value };
-    let (mut master, mut own, mut spread) = (1.0, [1.0; ALL as usize], Vec::with_capacity(events.len()));
+    let (mut master, mut own, mut spread) = (1.0, [1.0; ALL_CHANNELS as usize], Vec::with_capacity(events.len()));
     for (tick, channel, kind) in events {
         match kind {
-            EventKind::Control { controller: VOLUME, value } if channel == ALL => {
+            EventKind::Control { controller: VOLUME, value } if channel == ALL_CHANNELS => {
                 if value != master {
                     master = value;
                     spread.extend((0..).zip(own).map(|(channel, own)| (tick, channel, volume(own * master))));
@@ -41,7 +41,13 @@ mod tests {
     fn the_master_scales_what_channels_have_and_get() {
         let volume = |tick, channel, value| (tick, channel, EventKind::Control { controller: VOLUME, value });
         let program = (0, 3, EventKind::Program(5));
-        let events = vec![volume(0, 2, 0.5), program, volume(1, ALL, 0.5), volume(1, ALL, 0.5), volume(2, 2, 1.0)];
+        let events = vec![
+            volume(0, 2, 0.5),
+            program,
+            volume(1, ALL_CHANNELS, 0.5),
+            volume(1, ALL_CHANNELS, 0.5),
+            volume(2, 2, 1.0),
+        ];
         let spread = spread(events).unwrap();
         assert_eq!(spread.len(), 3 + 16);
         assert_eq!([spread[0], spread[1], spread[18]], [volume(0, 2, 0.5), program, volume(2, 2, 0.5)]);

@@ -1,7 +1,7 @@
 //! Reads the events of tracks by tick, and repairs or reports those that cannot be read.
 
 use super::container::Track;
-use super::fault::{Fault, Found};
+use super::fault::{Fault, Found, MOST_REPAIRS};
 use super::system_exclusive::system_exclusive;
 use crate::engine::EventKind;
 use crate::engine::midi::parse_message;
@@ -14,9 +14,6 @@ use std::mem::discriminant;
 
 /// Maximum number of events in a song. Each takes 32 bytes of memory.
 pub const MAX_EVENTS: usize = 8_000_000;
-
-/// Maximum number of repairs, counted by kind and track. A file with more is probably no MIDI file.
-const MOST_REPAIRS: usize = 1000;
 
 /// The contents of the tracks that were read so far.
 pub(super) struct TrackReader {
@@ -84,7 +81,7 @@ impl TrackReader {
                         break;
                     }
                     (Fault::NoStatus, Some(_), _) => {
-                        self.repair(spot, fault, "it goes on")?;
+                        self.repair(spot, fault, "running status continues")?;
                         events = EventIter::new(rest);
                         *events.running_status_mut() = status;
                     }
@@ -105,6 +102,7 @@ impl TrackReader {
                         tick = spot.tick;
                         self.last_tick = self.last_tick.max(tick);
                         self.events.extend(mended.map(|(channel, kind)| (tick, channel, kind)));
+                        self.check_count(spot)?;
                         events = EventIter::new(after);
                         *events.running_status_mut() = status;
                     }
@@ -125,7 +123,7 @@ impl TrackReader {
         if !whole {
             let (there, promised) = (track.bytes.len(), track.promised);
             let spot = Spot { track: number, tick, byte: track.start + there };
-            self.repair(spot, Fault::Whole([there, promised]), "played as far as it goes")?;
+            self.repair(spot, Fault::FileCutOff([there, promised]), "played as far as it goes")?;
         }
         Ok(())
     }
@@ -148,10 +146,15 @@ impl TrackReader {
             TrackEventKind::Meta(MetaMessage::EndOfTrack) => return Ok(true),
             _ => {}
         }
+        self.check_count(spot)?;
+        Ok(false)
+    }
+
+    fn check_count(&self, spot: Spot) -> Result<(), String> {
         if self.events.len() + self.tempos.len() > MAX_EVENTS {
             return Err(self.refused(spot, &format!("too many events: expected at most {MAX_EVENTS} in the file")));
         }
-        Ok(false)
+        Ok(())
     }
 
     /// Records a repair. In strict reading, returns an error instead.

@@ -1,6 +1,6 @@
 //! Converts system exclusive messages to events: resets of General MIDI, GS and XG, master volumes, and GS drum parts.
 
-use super::master_volume::ALL;
+use super::master_volume::ALL_CHANNELS;
 use crate::engine::EventKind;
 use crate::engine::banks::{BANK_SELECT, DRUM_BANK, DRUM_CHANNEL, MELODIC_BANK};
 use crate::engine::midi::DEFAULT_REVERB_SEND;
@@ -21,7 +21,7 @@ const GS_MASTER_VOLUME: [u8; 3] = [0x40, 0x00, 0x04];
 const GS_SET: [u8; 2] = [0x42, 0x12];
 const GS_RESET: [u8; 3] = [0x40, 0x00, 0x7F];
 
-/// The events that a message is converted to, with their channels: volumes of [`ALL`], bank selects, reverb sends and program
+/// The events that a message is converted to, with their channels: volumes of [`ALL_CHANNELS`], bank selects, reverb sends and program
 /// changes.
 /// `message` is the message after its byte F0. All other messages give no events.
 pub(super) fn system_exclusive(message: &[u8]) -> Vec<(u8, EventKind)> {
@@ -49,7 +49,7 @@ fn bank(value: u8) -> EventKind {
 }
 
 fn master_volume(value: f32) -> Vec<(u8, EventKind)> {
-    vec![(ALL, EventKind::Control { controller: VOLUME, value })]
+    vec![(ALL_CHANNELS, EventKind::Control { controller: VOLUME, value: value.min(1.0) })]
 }
 
 /// Sets every channel to bank 0 and its reverb send to the default (General MIDI 2), and the master volume to its maximum. The

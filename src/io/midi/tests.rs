@@ -202,7 +202,7 @@ fn lenient_reading_repairs_what_it_knows_and_says_so() {
             &[60, 61, 62][..],
             &[
                 "track 1, bar 1, beat 2 (tick 96, byte 39): an event has no status byte, and a meta or SysEx event ends \
-               running status: it goes on (2 times in this track)",
+               running status: running status continues (2 times in this track)",
             ][..],
         ),
         (
@@ -325,6 +325,21 @@ fn lenient_reading_finds_all_tracks() {
     }
     let whole = file(1, &[&track(60, 11), b"XFIH\0\0\0\x02ab", &track(61, 11), b"\0rubbish"]);
     assert_eq!(Song::parse_leniently(&whole, "x").unwrap(), (Song::parse(&whole, "x").unwrap(), vec![]));
+}
+
+#[test]
+fn hostile_files_take_no_time() {
+    let header = b"MThd\0\0\0\x06\0\x01\0\0\0\x60";
+    // No chunk and no further track in a megabyte, and a million empty tracks, each behind junk.
+    let none = [&header[..], &b"\xff\xff\xff\xff\0\0\0\0".repeat(1 << 17)].concat();
+    assert!(Song::parse_leniently(&none, "x").is_err());
+    let junk = [&header[..], &b"\xff\xff\xff\xffMTrk\0\0\0\0".repeat(1 << 17)].concat();
+    let refused = Song::parse_leniently(&junk, "x").unwrap_err().to_string();
+    assert!(refused.contains("4 bytes belong to no track"), "{refused}");
+    // Velocities above 127 under running status: more than a song may have.
+    let many = [&[0, 0x90, 60, 200][..], &[0, 60, 200].repeat(MAX_EVENTS)].concat();
+    let refused = Song::parse_leniently(&raw(&many), "x").unwrap_err().to_string();
+    assert!(refused.contains("too many events: expected at most 8000000"), "{refused}");
 }
 
 #[test]

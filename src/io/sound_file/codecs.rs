@@ -1,9 +1,10 @@
 //! Reads AIFF, FLAC, Ogg Vorbis, MP3 and compressed WAV, which Symphonia decodes.
 
+use super::magic::{start, tag_len};
 use super::recording::{Recording, check_layout};
 use crate::error::{Error, Result};
 use std::fs::File;
-use std::io::{Cursor, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{BufReader, Cursor, ErrorKind, Read, Seek, SeekFrom};
 use symphonia::core::codecs::audio::AudioDecoderOptions;
 use symphonia::core::errors::Error as Fault;
 use symphonia::core::formats::probe::Hint;
@@ -134,9 +135,10 @@ fn bare_flac(mut file: File) -> std::io::Result<Box<dyn MediaSource>> {
     /// Length in bytes of the description of the stream, and the shortest block that it may have (RFC 9639, §8.2).
     const DESCRIPTION: usize = 34;
     const LEAST_BLOCK: [u8; 2] = [0, 16];
-    let mut magic = super::start(&mut file)?;
-    let start = super::tag_len(&magic).unwrap_or(0);
-    file.seek(SeekFrom::Start(start + 4))?;
+    let mut magic = start(&mut file)?;
+    let tagged = tag_len(&magic).unwrap_or(0);
+    let mut file = BufReader::new(file);
+    file.seek(SeekFrom::Start(tagged + 4))?;
     let mut description = None;
     loop {
         let mut head = [0; 4];
@@ -159,7 +161,7 @@ fn bare_flac(mut file: File) -> std::io::Result<Box<dyn MediaSource>> {
     }
     let mut frame = [0; 2];
     let (Some(mut description), Ok(())) = (description, file.read_exact(&mut frame)) else {
-        file.seek(SeekFrom::Start(start))?;
+        file.seek(SeekFrom::Start(tagged))?;
         return Ok(Box::new(ReadOnlySource::new(file)));
     };
     // The shortest block is as long as the longest if all are alike, as bit 0 of a frame’s second byte says (§9.1).
@@ -200,7 +202,8 @@ fn mended_aiff(mut file: &File) -> std::io::Result<Option<(Vec<u8>, &'static str
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes)?;
     let Some((common, samples)) = found else {
-        let whole = bytes.len() as u32 - 8;
+        // A file that is longer than its size can say is left as it is.
+        let Ok(whole) = u32::try_from(bytes.len() - 8) else { return Ok(None) };
         bytes[4..8].copy_from_slice(&whole.to_be_bytes());
         return Ok(Some((bytes, "the file says that it is longer than it is")));
     };

@@ -275,13 +275,15 @@ fn oddities_beside_the_sound_do_not_keep_it_from_being_read() {
 fn integers_are_read_whether_their_padding_is_above_or_below() {
     let mut fmt = format(1, 1, 24);
     fmt[12] = 4;
-    let read = |samples: [i32; 3]| {
+    let read = |fmt: &[u8], samples: [i32; 3]| {
         let data: Vec<u8> = samples.into_iter().flat_map(i32::to_le_bytes).collect();
-        parsed(&riff(&[chunk(b"fmt ", &fmt), chunk(b"data", &data)])).unwrap().channels[0].clone()
+        parsed(&riff(&[chunk(b"fmt ", fmt), chunk(b"data", &data)])).unwrap().channels[0].clone()
     };
-    assert_eq!(read([1 << 22, -(1 << 22), 1]), [0.5, -0.5, 1.0 / 8_388_608.0], "above");
-    assert_eq!(read([1 << 30, -(1 << 30), 1 << 8]), [0.5, -0.5, 1.0 / 8_388_608.0], "below");
-    assert_eq!(read([1 << 22, -(1 << 22), 0]), [1.0 / 512.0, -1.0 / 512.0, 0.0], "below, and faint");
+    assert_eq!(read(&fmt, [1 << 22, -(1 << 22), 1]), [0.5, -0.5, 1.0 / 8_388_608.0], "above");
+    assert_eq!(read(&fmt, [1 << 30, -(1 << 30), 1 << 8]), [0.5, -0.5, 1.0 / 8_388_608.0], "below");
+    assert_eq!(read(&fmt, [1 << 22, -(1 << 22), 0]), [1.0 / 512.0, -1.0 / 512.0, 0.0], "below, and faint");
+    fmt[14] = 16;
+    assert_eq!(read(&fmt, [1 << 14, -(1 << 14), 1]), [0.5, -0.5, 1.0 / 32_768.0], "two bytes above");
 }
 
 #[test]
@@ -295,6 +297,11 @@ fn compressed_waves_are_decoded() {
         let found = parsed(&riff(&[chunk(b"fmt ", &fmt), chunk(b"data", &data)])).unwrap();
         assert_eq!((found.encoding.as_str(), found.frames(), found.warnings.len()), (encoding, 3000, 0));
         assert_eq!(found.channels[0][..3], expected.map(|number: i16| f32::from(number) / 32_768.0));
+        // The same as an extensible file.
+        let guid = [0, 0, 0, 0, 0x10, 0, 0x80, 0, 0, 0xaa, 0, 0x38, 0x9b, 0x71];
+        let extensible = [&format(0xfffe, 1, 8)[..], &[22, 0, 8, 0, 4, 0, 0, 0, code as u8, 0], &guid].concat();
+        let again = parsed(&riff(&[chunk(b"fmt ", &extensible), chunk(b"data", &data)])).unwrap();
+        assert_eq!(again.channels, found.channels);
     }
 }
 

@@ -26,8 +26,8 @@ struct Layout {
     sample_rate: u32,
     /// Bytes of a sample.
     width: usize,
-    /// Whether integers have fewer bits than their bytes.
-    padded: bool,
+    /// Bytes by which integers are longer than their bits.
+    padding: usize,
 }
 
 /// Reads a file whose first bytes are those of a WAV file.
@@ -46,19 +46,15 @@ pub(super) fn read(file: File, name: &str) -> Result<Recording> {
         let len = u64::from(u32::from_le_bytes([head[4], head[5], head[6], head[7]]));
         match &head[..4] {
             b"fmt " => {
-                let mut body = Vec::new();
-                (&mut input).take(len).read_to_end(&mut body).map_err(failed)?;
-                if let Some((_, encoding)) = DECODED.iter().find(|(code, _)| Some(*code) == word(&body, 0)) {
+                let body = beginning(&mut input, len).map_err(failed)?;
+                if let Some((_, encoding)) = DECODED.iter().find(|(code, _)| Some(*code) == format_code(&body)) {
                     return codecs::read(input.into_inner(), name, encoding);
                 }
                 layout = Some(Layout::parse(&body).map_err(wrong)?);
-                skip(&mut input, len % 2).map_err(failed)?;
             }
             b"ds64" => {
-                let mut body = Vec::new();
-                (&mut input).take(len).read_to_end(&mut body).map_err(failed)?;
+                let body = beginning(&mut input, len).map_err(failed)?;
                 long_data = body.get(8..16).and_then(|bytes| Some(u64::from_le_bytes(bytes.try_into().ok()?)));
-                skip(&mut input, len % 2).map_err(failed)?;
             }
             b"data" => {
                 let layout = layout.ok_or_else(|| wrong("the ‘fmt ’ chunk is missing before ‘data’".to_owned()))?;
@@ -73,6 +69,20 @@ pub(super) fn read(file: File, name: &str) -> Result<Recording> {
 /// The 16-bit number at this position of a chunk.
 fn word(body: &[u8], at: usize) -> Option<u16> {
     body.get(at..at + 2).map(|bytes| u16::from_le_bytes([bytes[0], bytes[1]]))
+}
+
+/// The code of a `fmt ` chunk. In an extensible one, the first two bytes of the sub-format's GUID are it.
+fn format_code(body: &[u8]) -> Option<u16> {
+    let code = word(body, 0)?;
+    if code == EXTENSIBLE { word(body, 24).or(Some(code)) } else { Some(code) }
+}
+
+/// The beginning of a chunk, as much as is ever read of one. The whole chunk is passed over.
+fn beginning(input: &mut (impl Read + Seek), len: u64) -> std::io::Result<Vec<u8>> {
+    let (mut body, kept) = (Vec::new(), len.min(64));
+    input.take(kept).read_to_end(&mut body)?;
+    skip(input, len - kept + len % 2)?;
+    Ok(body)
 }
 
 fn skip(input: &mut impl Seek, len: u64) -> std::io::Result<()> {
@@ -92,12 +102,11 @@ impl Layout {
     /// Reads a `fmt ` chunk. The error says what would be right.
     fn parse(body: &[u8]) -> std::result::Result<Self, String> {
         let word = |at| word(body, at);
-        let (Some(code), Some(channels), Some(align), Some(bits)) = (word(0), word(2), word(12), word(14)) else {
+        let (Some(code), Some(channels), Some(align), Some(bits)) = (format_code(body), word(2), word(12), word(14))
+        else {
             return Err("the ‘fmt ’ chunk is shorter than 16 bytes".to_owned());
         };
         let sample_rate = u32::from_le_bytes([body[4], body[5], body[6], body[7]]);
-        // The first two bytes of the sub-format's GUID are its code.
-        let code = if code == EXTENSIBLE { word(24).unwrap_or(code) } else { code };
         check_layout(sample_rate, channels.into())?;
         let (least, width) = (usize::from(bits.div_ceil(8)), usize::from(align / channels));
         let known = match code {
@@ -112,7 +121,7 @@ impl Layout {
                  8, 16, 24 or 32 bits, or floats of 32 or 64"
             ));
         }
-        Ok(Self { float: code == FLOAT, channels: channels.into(), sample_rate, width, padded: least < width })
+        Ok(Self { float: code == FLOAT, channels: channels.into(), sample_rate, width, padding: width - least })
     }
 
     /// Reads a `data` chunk of `len` bytes, or as much of it as the file has.
@@ -137,8 +146,8 @@ impl Layout {
                 channel.push(self.decode(bytes));
             }
         }
-        if self.padded {
-            raise(&mut channels, self.width);
+        if self.padding > 0 {
+            raise(&mut channels, self.width, self.padding);
         }
         let (found, told) = (channels[0].len() as u64, len / frame_len as u64);
         if left_open {
@@ -168,13 +177,13 @@ impl Layout {
 }
 
 /// Raises padded integers to full scale if their padding is above them, as some programs write it, and not below. They are padded
-/// below if the lowest byte is always 0, and also if a number needs the highest one.
-fn raise(channels: &mut [Vec<f32>], width: usize) {
-    let lowest = 256.0 / (1_u64 << (8 * width - 1)) as f32;
-    let mut samples = channels.iter().flatten();
+/// below if the lowest bytes are always 0, and also if a number needs the highest ones.
+fn raise(channels: &mut [Vec<f32>], width: usize, padding: usize) {
+    let gain = (1_u32 << (8 * padding)) as f32;
+    let (lowest, full) = (gain / (1_u64 << (8 * width - 1)) as f32, 1.0 / gain);
     let is_below = channels.iter().flatten().all(|sample| sample % lowest == 0.0);
-    if !is_below && samples.all(|sample| (-1.0 / 256.0..1.0 / 256.0).contains(sample)) {
-        channels.iter_mut().flatten().for_each(|sample| *sample *= 256.0);
+    if !is_below && channels.iter().flatten().all(|sample| (-full..full).contains(sample)) {
+        channels.iter_mut().flatten().for_each(|sample| *sample *= gain);
     }
 }
 

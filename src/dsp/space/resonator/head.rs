@@ -202,8 +202,8 @@ impl Kernel for Products<'_> {
     }
 }
 
-/// Adds what the frames of the present tick do in it. Each frame of the output has the same operations however a tick is
-/// divided: those of later frames of the input would only add zeros.
+/// Adds what the frames of the present tick do in it. However a tick is divided, a frame of the output is the same: later frames of
+/// the input add zeros, and the last addition gives all zeros the same sign.
 struct Near<'a> {
     now: &'a [f32; TICK],
     near: &'a [[f32; SIZE]; 2],
@@ -239,7 +239,7 @@ impl Kernel for Near<'_> {
             }
             for side in 0..2 {
                 for i in 0..4 {
-                    sums[side][i].store(&mut out[side][first + i * V::WIDTH..]);
+                    sums[side][i].add(V::splat(proof, 0.0)).store(&mut out[side][first + i * V::WIDTH..]);
                 }
             }
             first += step;

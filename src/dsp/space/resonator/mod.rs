@@ -24,7 +24,7 @@ use crate::dsp::simd::{Instructions, Level};
 use fourier::Pair;
 use head::{Head, Past};
 use layout::Tuning;
-use libm::{exp2, log2, round};
+use libm::{exp2, floor, log2};
 use tail::Tail;
 
 /// Smallest and largest pitch ratio of a body to its reference pitch.
@@ -194,6 +194,11 @@ impl Resonator {
         self.gains[0]
     }
 
+    /// The greatest of the gains that are not heard yet: with the coefficients of a change under way, and with the wanted ones.
+    pub(super) fn coming_noise_gain(&self) -> f32 {
+        self.gains[1].max(self.noise_gain())
+    }
+
     /// The same with the coefficients that are wanted.
     pub(super) fn noise_gain(&self) -> f32 {
         self.bands.noise_gain(self.decay.log_rates(self.sample_rate)) as f32
@@ -245,9 +250,9 @@ impl Resonator {
     }
 }
 
-/// Frames of a block: 11 ms. Shorter ones turn the masses more often, longer ones have a longer head, and their taps have to
+/// Frames of a block: 6 to 12 ms from 5.5 kHz on. Shorter ones turn the masses more often, longer ones have a longer head, and their taps have to
 /// reach further if the decay is short.
 fn block_frames(sample_rate: f64) -> usize {
-    let octaves = round(log2(sample_rate / 48_000.0)).clamp(-3.0, 4.0);
+    let octaves = floor(log2(sample_rate / 44_100.0)).clamp(-3.0, 4.0);
     (512.0 * exp2(octaves)) as usize
 }

@@ -7,8 +7,8 @@ use crate::dsp::simd::vector::LANES;
 /// Modes above this fraction of half the sample rate are left out.
 const TOP: f64 = 0.98;
 
-/// The modes of a body, by ascending frequency, and for each the amplitude that one tuning hands over to the next. All rows
-/// have some more numbers, so that they can be read by blocks from any mode on.
+/// The modes of a body, by ascending frequency. All rows have some more numbers, so that they can be read by blocks from any mode
+/// on.
 #[derive(Clone, Debug)]
 pub(super) struct Modes {
     len: usize,

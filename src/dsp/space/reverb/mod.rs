@@ -28,6 +28,8 @@ const MEASURE_TICKS: u64 = 32;
 ///
 /// Once the input is silent and the tail is certainly below −120 dBFS, it sleeps: a silent block then costs one look at its
 /// samples, and is not changed. At a wet level of 0 it is off, and does not change the signal if the dry level is 1.
+///
+/// A clone has no room to spare: it may allocate when it first wakes, and needs another for a larger body.
 #[derive(Clone, Debug)]
 pub struct ModalReverb {
     sample_rate: f64,

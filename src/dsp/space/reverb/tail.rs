@@ -68,7 +68,7 @@ impl ModalReverb {
     /// The largest wet gain from now on.
     pub(super) fn loudest_wet(&self) -> f64 {
         // The level of a change that is not heard yet is still to come.
-        let wanted = if self.next_body.is_some() { 0.0 } else { self.levels[1] * self.body.noise_gain() };
+        let wanted = if self.next_body.is_some() { 0.0 } else { self.levels[1] * self.body.coming_noise_gain() };
         f64::from(self.wet.after(0).max(self.wet.target()).max(wanted))
     }
 }
