@@ -15,7 +15,7 @@ const IN_DS64: u64 = 0xffff_ffff;
 const PCM: u16 = 1;
 const FLOAT: u16 = 3;
 const EXTENSIBLE: u16 = 0xfffe;
-/// Those that Symphonia decodes, and their names.
+/// Those that Symphonia decodes, where they are not in an extensible chunk, and their names.
 const DECODED: [(u16, &str); 4] = [(2, "MS ADPCM"), (6, "A-law"), (7, "µ-law"), (0x11, "IMA ADPCM")];
 
 /// How the samples are stored.
@@ -47,7 +47,7 @@ pub(super) fn read(file: File, name: &str) -> Result<Recording> {
         match &head[..4] {
             b"fmt " => {
                 let body = beginning(&mut input, len).map_err(failed)?;
-                if let Some((_, encoding)) = DECODED.iter().find(|(code, _)| Some(*code) == format_code(&body)) {
+                if let Some((_, encoding)) = DECODED.iter().find(|(code, _)| Some(*code) == word(&body, 0)) {
                     return codecs::read(input.into_inner(), name, encoding);
                 }
                 layout = Some(Layout::parse(&body).map_err(wrong)?);
@@ -189,5 +189,6 @@ fn raise(channels: &mut [Vec<f32>], width: usize, padding: usize) {
 
 /// The name of an encoding that cannot be read.
 fn coding(code: u16) -> String {
-    if code == 0x55 { "MP3".to_owned() } else { format!("format {code}") }
+    let known = DECODED.into_iter().chain([(0x55, "MP3")]).find(|(known, _)| *known == code);
+    known.map_or_else(|| format!("format {code}"), |(_, name)| name.to_owned())
 }
