@@ -26,7 +26,7 @@ const ALLOWED: &[Row] = &[
     ("request", &["engine", "error", "io", "params", "preset", "render", "sound", "text", "units"]),
     ("batch", &["analysis", "dsp", "error", "io", "params", "render", "request"]),
     ("render", &["dsp", "engine", "error", "io", "params", "patch", "preset", "sound", "units"]),
-    ("realtime", &["engine", "error", "io", "params", "patch", "preset", "render", "sound", "text", "units"]),
+    ("realtime", &["engine", "error", "io", "params", "patch", "render", "sound", "units"]),
     ("figure", &["error", "text"]),
     ("analysis", &["dsp", "engine", "error", "figure", "io", "params", "patch", "preset", "sound", "text", "units"]),
     ("lab", &["dsp", "error", "figure", "text"]),

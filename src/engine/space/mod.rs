@@ -4,8 +4,8 @@
 //! its input is silent. [`Space::skip`] then advances what has a clock, with the same result as silent input. So the output
 //! does not depend on the block size, nor on the frame at which the silence is detected.
 //!
-//! Room for bodies is made outside the audio thread, 4 MB per synth, of which a plate at rest uses 1 MB: by `Synth::reserve_space`, or when a kit with a
-//! body is set. Without room, bodies stay off. An ensemble makes room for each channel that starts with a body, and for
+//! Room for bodies is made outside the audio thread, 4 MB per synth, of which a plate at rest uses 1 MB: by
+//! `Synth::reserve_space`, or when a kit with a body is set. Without room, bodies stay off. An ensemble makes room for each channel that starts with a body, and for
 //! all channels if one of its programs has a body. Each channel has its own effects, so sixteen channels with a plate
 //! take the time of sixteen plates.
 //!

@@ -1,6 +1,5 @@
 //! Reads AIFF, FLAC, Ogg Vorbis, MP3 and compressed WAV, which Symphonia decodes.
 
-use super::magic::{start, tag_len};
 use super::recording::{Recording, check_layout};
 use crate::error::{Error, Result};
 use std::fs::File;
@@ -15,7 +14,7 @@ use symphonia::core::meta::MetadataOptions;
 /// Length in bytes of the longest frame of MPEG audio, 320 kbit/s at 8 kHz.
 const MOST_FRAME: usize = 2881;
 
-/// Reads a file whose first bytes are those of `format`.
+/// Reads a file whose next bytes are those of `format`.
 pub(super) fn read(file: File, name: &str, format: &str) -> Result<Recording> {
     let wrong = |fault: Fault| match fault {
         Fault::IoError(source) if source.kind() != ErrorKind::UnexpectedEof => Error::io(name, source),
@@ -129,16 +128,15 @@ fn track_frames(container: &dyn symphonia::core::formats::FormatReader, track: u
     container.tracks().iter().find(|other| other.id == track)?.num_frames
 }
 
-/// A FLAC without an ID3v2 tag before it, and of its metadata only the description of the stream: the decoder would refuse the
-/// whole file for a fault in what the sound does not need.
-fn bare_flac(mut file: File) -> std::io::Result<Box<dyn MediaSource>> {
+/// A FLAC with only the description of the stream of its metadata: the decoder would refuse the whole file for a fault in what the
+/// sound does not need.
+fn bare_flac(file: File) -> std::io::Result<Box<dyn MediaSource>> {
     /// Length in bytes of the description of the stream, and the shortest block that it may have (RFC 9639, §8.2).
     const DESCRIPTION: usize = 34;
     const LEAST_BLOCK: [u8; 2] = [0, 16];
-    let mut magic = start(&mut file)?;
-    let tagged = tag_len(&magic).unwrap_or(0);
     let mut file = BufReader::new(file);
-    file.seek(SeekFrom::Start(tagged + 4))?;
+    let start = file.stream_position()?;
+    file.seek_relative(4)?;
     let mut description = None;
     loop {
         let mut head = [0; 4];
@@ -161,17 +159,14 @@ fn bare_flac(mut file: File) -> std::io::Result<Box<dyn MediaSource>> {
     }
     let mut frame = [0; 2];
     let (Some(mut description), Ok(())) = (description, file.read_exact(&mut frame)) else {
-        file.seek(SeekFrom::Start(tagged))?;
+        file.seek(SeekFrom::Start(start))?;
         return Ok(Box::new(ReadOnlySource::new(file)));
     };
     // The shortest block is as long as the longest if all are alike, as bit 0 of a frame’s second byte says (§9.1).
     let least = if frame[1] & 1 == 0 { [description[2], description[3]] } else { LEAST_BLOCK };
     description[..2].copy_from_slice(&least);
-    magic.clear();
-    magic.extend(b"fLaC\x80\0\0\x22");
-    magic.extend(description);
-    magic.extend(frame);
-    Ok(Box::new(ReadOnlySource::new(Cursor::new(magic).chain(file))))
+    let beginning = [b"fLaC\x80\0\0\x22", &description[..], &frame].concat();
+    Ok(Box::new(ReadOnlySource::new(Cursor::new(beginning).chain(file))))
 }
 
 /// The contents of an AIFF file whose sizes the decoder would refuse, with its sizes corrected, and what was wrong: it is cut off

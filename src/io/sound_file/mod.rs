@@ -1,7 +1,6 @@
 //! Reads sound files: WAV of every kind, AIFF, FLAC, Ogg Vorbis and MP3.
 
 mod codecs;
-mod magic;
 mod recording;
 mod resample;
 mod wav;
@@ -10,9 +9,13 @@ pub use recording::{MOST_CHANNELS, Recording};
 pub use resample::resampled;
 
 use crate::error::{Error, Result};
-use magic::{start, tag_len};
 use std::fs::File;
-use std::io::{Seek, SeekFrom};
+use std::io::{Read, Seek, SeekFrom};
+
+/// Number of bytes at the start of a file that identify its format.
+const MAGIC_LEN: usize = 36;
+/// Length in bytes of the header of an ID3v2 tag.
+const TAG_LEN: u64 = 10;
 
 /// Reads a sound file to its end; `name` is its name in errors. A file that is cut off is read up to its end, with a
 /// line in [`Recording::warnings`].
@@ -26,14 +29,16 @@ pub fn read(mut file: File, name: &str) -> Result<Recording> {
     if magic.is_empty() {
         return Err(Error::format(name, "the file is empty: expected a sound file"));
     }
+    let mut place = 0;
     // Some programs tag a FLAC as if it were an MP3.
-    let tagged = tag_len(&magic).unwrap_or(0);
-    file.seek(SeekFrom::Start(tagged)).map_err(failed)?;
-    let below = start(&mut file).map_err(failed)?;
-    if below.starts_with(b"fLaC") {
-        magic = below;
+    if let Some(len) = tag_len(&magic) {
+        file.seek(SeekFrom::Start(len)).map_err(failed)?;
+        let below = start(&mut file).map_err(failed)?;
+        if below.starts_with(b"fLaC") {
+            (place, magic) = (len, below);
+        }
     }
-    file.seek(SeekFrom::Start(0)).map_err(failed)?;
+    file.seek(SeekFrom::Start(place)).map_err(failed)?;
     let recording = match Format::of(&magic) {
         Some(Format::Wav) => wav::read(file, name),
         Some(Format::Coded(format)) => codecs::read(file, name, format),
@@ -48,6 +53,22 @@ pub fn read(mut file: File, name: &str) -> Result<Recording> {
 }
 
 const FORMATS: &str = "WAV, AIFF, FLAC, Ogg Vorbis or MP3";
+
+/// The next bytes of a file, at most [`MAGIC_LEN`].
+fn start(file: &mut File) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(MAGIC_LEN);
+    file.take(MAGIC_LEN as u64).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The length in bytes of the ID3v2 tag that a file starts with. Its size has 7 bits a byte, and leaves out header and footer
+/// (ID3v2.4, §3.1).
+fn tag_len(magic: &[u8]) -> Option<u64> {
+    let tag = magic.strip_prefix(b"ID3")?;
+    let (flags, size) = (tag.get(2)?, tag.get(3..7)?);
+    let size = size.iter().fold(0, |size, byte| size << 7 | u64::from(byte & 0x7f));
+    Some(size + TAG_LEN * if flags & 0x10 != 0 { 2 } else { 1 })
+}
 
 /// The format that the first bytes of a file indicate.
 #[derive(Debug, PartialEq)]

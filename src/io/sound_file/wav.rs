@@ -48,6 +48,7 @@ pub(super) fn read(file: File, name: &str) -> Result<Recording> {
             b"fmt " => {
                 let body = beginning(&mut input, len).map_err(failed)?;
                 if let Some((_, encoding)) = DECODED.iter().find(|(code, _)| Some(*code) == word(&body, 0)) {
+                    input.rewind().map_err(failed)?;
                     return codecs::read(input.into_inner(), name, encoding);
                 }
                 layout = Some(Layout::parse(&body).map_err(wrong)?);

@@ -194,14 +194,14 @@ impl Resonator {
         self.gains[0]
     }
 
-    /// The greatest of the gains that are not heard yet: with the coefficients of a change under way, and with the wanted ones.
-    pub(super) fn coming_noise_gain(&self) -> f32 {
-        self.gains[1].max(self.noise_gain())
-    }
-
     /// The same with the coefficients that are wanted.
     pub(super) fn noise_gain(&self) -> f32 {
         self.bands.noise_gain(self.decay.log_rates(self.sample_rate)) as f32
+    }
+
+    /// The greatest of the gains that are not heard yet: with the coefficients of a change under way, and with the wanted ones.
+    pub(super) fn coming_noise_gain(&self) -> f32 {
+        self.gains[1].max(self.noise_gain())
     }
 
     /// Handles a control tick. `input` is the sum of the input's magnitudes since the last tick.
