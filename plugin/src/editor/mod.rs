@@ -4,7 +4,8 @@
 //! |---|---|
 //! | `window` | the whole: header, status line, and what they ask for |
 //! | `theme` | colours, sizes and fonts; the places of the parts |
-//! | `modes`, `displays`, `body` | the upper half: the modes, moving pictures, the moving body; also the body's page |
+//! | `play` | the page it opens with: the body large, what moves it, what it is, what it stands on, macros |
+//! | `modes`, `displays`, `body` | the upper half of *Sound*: the modes, moving pictures, the moving body; also the body's page |
 //! | `pages`, `routes` | the lower half: tabs, sections of parameters, kit, tuning, devices; routes and MIDI learn |
 //! | `keyboard` | the piano, and whatever else plays a key |
 //! | `browser`, `manual`, `drops` | over the window: sounds to find and save, the manual, fits of dropped recordings |
@@ -33,6 +34,7 @@ mod keyboard;
 mod manual;
 mod modes;
 mod pages;
+mod play;
 mod routes;
 #[cfg(test)]
 mod tests;

@@ -10,8 +10,8 @@ use std::process::ExitCode;
 use vst3::ComWrapper;
 use vst3::Steinberg::IPlugFrame;
 
-/// The knob of the mallet's level in the window as it opens.
-const KNOB: [i16; 2] = [52, 394];
+/// The knob of the decay in the window as it opens.
+const KNOB: [i16; 2] = [337, 527];
 /// Where the menu's entries may be below the pointer that opened it.
 const ENTRIES: std::ops::Range<i16> = 30..180;
 
@@ -36,7 +36,7 @@ pub(crate) fn work(name: &str) -> ExitCode {
 fn in_clap() {
     let parent = Parent::new();
     let mut instance = Instance::new();
-    let expected = instance.id(Param::MalletLevel).get();
+    let expected = instance.id(Param::Decay).get();
     let editor = Editor::open(&mut instance, &parent);
     editor.wait_until_drawn(&mut instance);
     let mut last = 0;
@@ -54,7 +54,7 @@ fn in_vst3() {
     let window = onlooker.make_window();
     let plugin = Vst3::new(&Module::open());
     let mut known = (0..).map_while(|index| plugin.parameter(index));
-    let (expected, _) = known.find(|(_, title)| title == Param::MalletLevel.info().name).unwrap();
+    let (expected, _) = known.find(|(_, title)| title == Param::Decay.info().name).unwrap();
     let frame = ComWrapper::new(Frame::default());
     let view = plugin.open_window(&frame.to_com_ptr::<IPlugFrame>().unwrap(), window);
     wait_until("a picture", || {

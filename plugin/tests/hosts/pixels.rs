@@ -26,14 +26,14 @@ pub(crate) fn the_real_window_has_the_pixels_of_the_accepted_picture() {
 
 /// Runs in the process that the test starts.
 pub(crate) fn work() -> ExitCode {
-    let accepted = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures/dark.png");
+    let accepted = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures/play-dark.png");
     let accepted = image::open(&accepted).unwrap_or_else(|error| panic!("{}: {error}", accepted.display())).into_rgb8();
     let (width, height) = accepted.dimensions();
     let parent = Parent::new();
     // Nothing may be under the pointer.
     parent.onlooker.point([1_279, 799]);
     let mut instance = Instance::new();
-    let preset = Preset::find("Marimba").unwrap().to_toml();
+    let preset = Preset::find("Church Bell").unwrap().to_toml();
     let own = serde_json::json!({ "format": 1, "preset": preset, "seed": 0, "window": [width, height] });
     assert!(instance.load(&enclosed(&own.to_string())));
     let editor = Editor::open(&mut instance, &parent);

@@ -19,6 +19,7 @@ const LAUNCHER: &str = "/usr/libexec/at-spi-bus-launcher";
 /// Numbers of AT-SPI's roles.
 const COMBO_BOX: u32 = 11;
 const SLIDER: u32 = 51;
+const PAGE_TAB: u32 = 37;
 const TOGGLE_BUTTON: u32 = 62;
 const ENTRY: u32 = 79;
 const ACCESSIBLE: &str = "org.a11y.atspi.Accessible";
@@ -139,6 +140,10 @@ pub(crate) fn work() -> ExitCode {
             });
             found.unwrap()
         };
+        let act = |node: &Node| {
+            reader.proxy(node, "org.a11y.atspi.Action").unwrap().call::<_, _, bool>("DoAction", &(0_i32)).unwrap()
+        };
+        assert!(act(&finds(&mut instance, PAGE_TAB, "Sound")));
         let knob = finds(&mut instance, SLIDER, "Mallet hardness");
         let value = reader.proxy(&knob, "org.a11y.atspi.Value").unwrap();
         let range = ["MinimumValue", "MaximumValue"].map(|name| value.get_property::<f64>(name).unwrap());
@@ -161,8 +166,7 @@ pub(crate) fn work() -> ExitCode {
         let is_in_the_window = (0..1_100).contains(&left) && (340..600).contains(&top);
         assert!(is_in_the_window && width > 20 && height > 20, "{left}, {top}: {width} × {height}");
         let browse = finds(&mut instance, TOGGLE_BUTTON, "Browse");
-        let pressed: bool = reader.proxy(&browse, "org.a11y.atspi.Action").unwrap().call("DoAction", &(0_i32)).unwrap();
-        assert!(pressed);
+        assert!(act(&browse));
         finds(&mut instance, ENTRY, "Search");
         editor.close(&mut instance);
         wait_until("the window's widgets are gone", || reader.find(ENTRY, "Search").is_none());

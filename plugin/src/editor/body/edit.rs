@@ -13,7 +13,7 @@ use std::time::Instant;
 const CHANGES: f64 = 0.06;
 
 /// A change of a body in progress.
-pub(super) struct BodyEdit {
+pub(crate) struct BodyEdit {
     origin: Origin,
     /// The last body whose sound could be made, and the description of the change up to then.
     good: (Origin, String),
@@ -31,7 +31,7 @@ pub(super) struct BodyEdit {
 
 impl BodyEdit {
     /// Begins to change the body from which the modes of `loaded` are made.
-    pub(super) fn begin(origin: &Origin, loaded: &Arc<Loaded>, controls: &mut Controls) -> Self {
+    pub(crate) fn begin(origin: &Origin, loaded: &Arc<Loaded>, controls: &mut Controls) -> Self {
         controls.release();
         controls.history.begin(controls.params);
         let decay = f64::from(controls.value(Param::Decay.info()));
@@ -57,7 +57,7 @@ impl BodyEdit {
     }
 
     /// Sets the body from which the sound is made next.
-    pub(super) fn change(&mut self, origin: Origin, what: String) {
+    pub(crate) fn change(&mut self, origin: Origin, what: String) {
         (self.origin, self.what, self.is_new) = (origin, what, true);
     }
 
@@ -95,7 +95,7 @@ impl BodyEdit {
     }
 
     /// Makes the sound a last time and ends the undo step. The error is that of [`BodyEdit::write`].
-    pub(super) fn end(mut self, controls: &mut Controls) -> Result<(), String> {
+    pub(crate) fn end(mut self, controls: &mut Controls) -> Result<(), String> {
         let result = self.write(f64::INFINITY, controls);
         controls.history.end(self.what, controls.params);
         let position = controls.position(Param::Decay.info());

@@ -6,9 +6,11 @@ use std::f32::consts::TAU;
 
 /// How steeply the picture looks down on a body: sine and cosine of the angle.
 const LOOK: [f32; 2] = [0.5, 0.866];
+/// The direction from which the picture looks.
+pub(super) const VIEW: [f32; 3] = [0.0, LOOK[1], LOOK[0]];
 /// The outline of a bell from its crown to its rim: height and radius.
 const BELL: [[f32; 2]; 8] =
-    [[1.0, 0.0], [1.0, 0.3], [0.93, 0.4], [0.72, 0.45], [0.4, 0.52], [0.2, 0.62], [0.08, 0.78], [0.0, 0.92]];
+    [[1.0, 0.0], [0.99, 0.24], [0.91, 0.35], [0.7, 0.39], [0.46, 0.44], [0.25, 0.52], [0.09, 0.62], [0.0, 0.72]];
 /// The outline of a bowl or a glass, from the bottom to the rim.
 const BOWL: [[f32; 2]; 8] =
     [[0.0, 0.0], [0.02, 0.3], [0.1, 0.56], [0.24, 0.74], [0.42, 0.86], [0.62, 0.92], [0.82, 0.95], [1.0, 0.96]];
@@ -48,19 +50,18 @@ impl Form {
         }
     }
 
-    /// How many points the picture has along `x` and along `y`.
+    /// How many points a picture has along `x` and along `y`.
     pub(super) fn grid(self) -> [usize; 2] {
         match self {
             Self::Line => [97, 1],
-            Self::Round => [9, 41],
-            Self::Plate { .. } => [19, 13],
-            Self::Bell | Self::Bowl => [8, 41],
+            Self::Round => [15, 61],
+            Self::Plate { .. } => [31, 21],
+            Self::Bell | Self::Bowl => [22, 61],
         }
     }
 
-    /// The points of the picture, those along `x` one after the other.
-    pub(super) fn points(self) -> Vec<Point> {
-        let [columns, rows] = self.grid();
+    /// The points of a grid, those along `x` one after the other.
+    pub(super) fn points([columns, rows]: [usize; 2]) -> Vec<Point> {
         let share = |place: usize, count: usize| if count > 1 { place as f64 / (count - 1) as f64 } else { 0.0 };
         let point = |place: usize| Point { x: share(place % columns, columns), y: share(place / columns, rows) };
         (0..columns * rows).map(point).collect()
@@ -91,10 +92,15 @@ impl Form {
         }
     }
 
+    /// Where a point is in space: to the right, to the viewer, and up. The displacement is in the picture's unit.
+    pub(super) fn in_space(self, point: Point, displacement: f32) -> [f32; 3] {
+        let Place { at, normal } = self.place(point);
+        std::array::from_fn(|axis| at[axis] + normal[axis] * displacement)
+    }
+
     /// Where a point is in the picture. The displacement is in the picture's unit.
     pub(crate) fn on(self, rect: Rect, point: Point, displacement: f32) -> Pos2 {
-        let Place { at, normal } = self.place(point);
-        let [x, y, z]: [f32; 3] = std::array::from_fn(|axis| at[axis] + normal[axis] * displacement);
+        let [x, y, z] = self.in_space(point, displacement);
         let [sine, cosine] = LOOK;
         let (unit, middle) = self.scale(rect);
         match self {
@@ -111,7 +117,8 @@ impl Form {
             // Leaves room for displacements up and down.
             Self::Round => ((width * 0.9).min(height / 0.8), 0.0),
             Self::Plate { .. } => ((width * 0.9).min(height / 0.8), 0.0),
-            Self::Bell | Self::Bowl => ((width * 0.85).min(height / 1.05), 0.5),
+            Self::Bell => ((width * 0.85).min(height / 0.9), 0.5),
+            Self::Bowl => ((width * 0.85).min(height / 1.05), 0.5),
         }
     }
 
@@ -158,12 +165,16 @@ impl Form {
     }
 }
 
-/// The point of the outline at a share of its length, interpolated.
+/// The point of the outline at a share of its length, on a smooth curve through all of its points (Catmull and Rom).
 fn along(outline: &[[f32; 2]], share: f32) -> [f32; 2] {
     let place = share.clamp(0.0, 1.0) * (outline.len() - 1) as f32;
     let before = (place as usize).min(outline.len() - 2);
-    let rest = place - before as f32;
-    std::array::from_fn(|axis| outline[before][axis] * (1.0 - rest) + outline[before + 1][axis] * rest)
+    let t = place - before as f32;
+    std::array::from_fn(|axis| {
+        let at = |place: usize| outline[place.min(outline.len() - 1)][axis];
+        let [a, b, c, d] = [at(before.saturating_sub(1)), at(before), at(before + 1), at(before + 2)];
+        b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a)))
+    })
 }
 
 #[cfg(test)]
@@ -176,7 +187,7 @@ mod tests {
         for form in
             [Form::Line, Form::Round, Form::Plate { aspect: 2.0 }, Form::Plate { aspect: 0.5 }, Form::Bell, Form::Bowl]
         {
-            for point in form.points() {
+            for point in Form::points(form.grid()) {
                 for displacement in [-1.0, 0.0, 1.0] {
                     let at = form.on(rect, point, displacement * form.reach(rect));
                     assert!(rect.contains(at), "{form:?} {point:?} {displacement}: {at:?}");

@@ -1,7 +1,8 @@
 //! The body from which a sound's modes are made: its page, its numbers, and its moving picture.
 
-mod edit;
-mod face;
+pub(super) mod edit;
+pub(super) mod face;
+pub(super) mod figure;
 pub(super) mod form;
 mod numbers;
 pub(super) mod origin;

@@ -40,7 +40,7 @@ impl Origin {
     }
 
     /// Like [`Origin::body`], to be changed.
-    pub(super) fn body_mut(&mut self) -> Option<&mut Body> {
+    pub(crate) fn body_mut(&mut self) -> Option<&mut Body> {
         match self {
             Self::FromBody(body) => Some(body),
             Self::FromPair(pair) => Some(&mut pair.first),
@@ -84,7 +84,7 @@ impl Origin {
 
     /// The same, with the model of a body replaced: of the second body if `is_second`, otherwise of the only or first
     /// one. Without a model, the second body is removed.
-    pub(super) fn with_model(&self, is_second: bool, model: Option<&Model>) -> Self {
+    pub(crate) fn with_model(&self, is_second: bool, model: Option<&Model>) -> Self {
         let new = model.map(|model| Body::new(model.clone()));
         match (self, new, is_second) {
             (Self::Table, Some(new), _) => Self::FromBody(Box::new(new)),
@@ -127,6 +127,6 @@ fn like(old: &Body, new: Body) -> Body {
 }
 
 /// The name of a model as shown to the user.
-pub(super) fn model_name(id: &str) -> String {
+pub(crate) fn model_name(id: &str) -> String {
     id.replace('_', " ")
 }

@@ -1,10 +1,11 @@
 //! The body that is drawn for a sound: its form, and each mode's shape on it.
 
+use super::figure::Figure;
 use super::form::Form;
 use super::origin::{Origin, model_name};
 use sprung::patch::ModeTable;
 use sprung::preset::Family;
-use sprung::sound::bodies::{Body, Model, Point};
+use sprung::sound::bodies::{Body, Model};
 use sprung::units::semitones_from_ratio;
 
 /// The most modes that are drawn on a line, and on a surface: the grid of points is too coarse for finer shapes.
@@ -16,8 +17,7 @@ const NEAR: [f64; 2] = [0.6, 5.0];
 /// A body to draw.
 pub(super) struct BodyShape {
     pub(super) origin: Origin,
-    pub(super) form: Form,
-    pub(super) points: Vec<Point>,
+    pub(super) figure: Figure,
     /// For each mode of the sound, its shape at the points; none if the mode belongs to a body that is not drawn.
     shapes: Vec<Option<Vec<f32>>>,
     /// Rotation speed of each mode in slow motion, as a multiple of the lowest mode's.
@@ -56,12 +56,13 @@ impl BodyShape {
                 (Body::new(model), NEAR[1], format!("a table of modes, drawn as a {}", model_name(id)))
             }
         };
-        let form = Form::of(&body.model);
+        let figure = Figure::of(&body);
+        let form = figure.form;
         let most = DRAWN[usize::from(form != Form::Line)];
         // A bed's modes depend on how many there are.
         let count = if matches!(body.model, Model::Bed(_)) { body.modes } else { body.modes.min(DRAWN[0]) };
-        let points = form.points();
-        let found = Body { modes: count, ..body }.modes_at(&points);
+        let points = &figure.points;
+        let found = Body { modes: count, ..body }.modes_at(points);
         let found: Vec<(f64, Vec<f32>)> = found
             .into_iter()
             .take(most)
@@ -84,12 +85,12 @@ impl BodyShape {
         // High modes at their true speed would be a blur.
         let speeds = modes.iter().map(|mode| (mode.ratio / lowest).sqrt().min(6.0)).collect();
         let shapes = modes.iter().map(|mode| mode.ratio).enumerate().map(shape).collect();
-        Self { origin, form, points, shapes, speeds, caption }
+        Self { origin, figure, shapes, speeds, caption }
     }
 
     /// The displacement of each point, for the amplitudes of the modes.
     pub(super) fn displacements(&self, amplitudes: &[f32]) -> Vec<f32> {
-        let mut sum = vec![0.0; self.points.len()];
+        let mut sum = vec![0.0; self.figure.points.len()];
         for (shape, amplitude) in self.shapes.iter().zip(amplitudes) {
             if let Some(shape) = shape.as_ref().filter(|_| *amplitude != 0.0) {
                 sum.iter_mut().zip(shape).for_each(|(sum, value)| *sum += amplitude * value);
@@ -108,7 +109,7 @@ mod tests {
     fn a_string_moves_as_its_modes_do_and_its_ends_stay() {
         let body = Body::new(Model::String);
         let shape = BodyShape::of(&modes_of_body(&body), None);
-        let count = shape.points.len();
+        let count = shape.figure.points.len();
         for mode in 0..6 {
             let amplitudes: Vec<f32> = (0..6).map(|other| if other == mode { 1.0 } else { 0.0 }).collect();
             let moved = shape.displacements(&amplitudes);
@@ -131,6 +132,6 @@ mod tests {
         }
         let bell = Preset::find("Church Bell").unwrap();
         let shape = BodyShape::of(&bell.patch.modes, None);
-        assert_eq!((shape.form, shape.caption.as_str()), (Form::Bell, "church bell, joined to a second body"));
+        assert_eq!((shape.figure.form, shape.caption.as_str()), (Form::Bell, "church bell, joined to a second body"));
     }
 }

@@ -8,7 +8,7 @@ use super::shape::BodyShape;
 use crate::editor::controls::gestures::touch;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
-use crate::editor::keyboard::audition::Audition;
+use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::modes::table::replace;
 use crate::loaded::Loaded;
 use egui::{CursorIcon, Id, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
@@ -26,6 +26,8 @@ const REACH: f32 = 26.0;
 struct Drag {
     point: Point,
     written: Option<Point>,
+    /// The velocity of its first strike.
+    velocity: Option<f32>,
     /// When the sound may be changed again.
     next: f64,
     /// The sound that was written last. If another sound is loaded, the drag is over.
@@ -79,11 +81,11 @@ impl BodyView {
             }
         }
         let amplitudes = self.advance(controls.seconds, &shape, energies);
-        let reach = shape.form.reach(rect);
+        let reach = shape.figure.form.reach(rect);
         let soft = |value: f32| reach * value / (1.0 + value * value).sqrt();
         let moved: Vec<f32> = shape.displacements(&amplitudes).into_iter().map(soft).collect();
         let place = self.drag.as_ref().map(|drag| drag.point).or(strike(&shape, shown, controls));
-        face::paint(ui.painter(), rect, &shape, &moved, place, controls.palette);
+        face::paint(ui.painter(), rect, &shape.figure, &moved, place, controls.palette);
         let caption = shape.caption.clone();
         self.shape = Some((loaded, shape));
         caption
@@ -122,7 +124,7 @@ impl BodyView {
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Struck body"));
         let now = ui.input(|input| input.time);
         let pointer = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
-        let found = pointer.or(response.hover_pos()).map(|pointer| shape.form.nearest(rect, pointer));
+        let found = pointer.or(response.hover_pos()).map(|pointer| shape.figure.form.nearest(rect, pointer));
         let point = found.map(|(point, _)| confined(point, shape));
         if let Some(point) = point {
             *controls.hint = Hint::new(describe(point, shape), "Drag to where it is struck.");
@@ -131,8 +133,8 @@ impl BodyView {
         if is_pressed && self.drag.is_none() && found.is_some_and(|(_, distance)| distance <= REACH) {
             controls.history.begin(controls.params);
             if let Some(point) = point {
-                let loaded = shown.loaded().clone();
-                self.drag = Some(Drag { point, written: None, next: now, loaded });
+                let (loaded, velocity) = (shown.loaded().clone(), Some(velocity(ui)));
+                self.drag = Some(Drag { point, written: None, velocity, next: now, loaded });
             }
         }
         let Some(drag) = &mut self.drag else { return };
@@ -147,6 +149,9 @@ impl BodyView {
             drag.next = now + rest(start);
             drag.written = Some(drag.point);
             drag.loaded = controls.params.loaded();
+        }
+        if let Some(velocity) = drag.velocity.take() {
+            audition.strike(shown.guide().home, velocity, now, controls.params.link());
         }
         if is_over {
             self.drag = None;
@@ -166,6 +171,11 @@ impl BodyView {
     }
 }
 
+/// The velocity of a strike by a click: the faster the pointer moves, the harder.
+pub(crate) fn velocity(ui: &Ui) -> f32 {
+    (VELOCITY + 0.0002 * ui.input(|input| input.pointer.velocity().length())).min(1.0)
+}
+
 /// The exciter that has a place, for a table of modes: the pluck if it is on, or else the bow if it is on.
 fn exciter(controls: &Controls) -> Option<Param> {
     let levels = [(Param::PluckLevel, Param::PluckPosition), (Param::BowLevel, Param::BowPosition)];
@@ -177,7 +187,7 @@ fn strike(shape: &BodyShape, shown: &Shown, controls: &Controls) -> Option<Point
     shown.preset()?;
     match shape.origin.body() {
         Some(body) => Some(body.strike),
-        None if shape.form == Form::Line => {
+        None if shape.figure.form == Form::Line => {
             Some(Point { x: f64::from(controls.value(exciter(controls)?.info())) / 100.0, y: 0.0 })
         }
         None => None,
@@ -188,7 +198,7 @@ fn strike(shape: &BodyShape, shown: &Shown, controls: &Controls) -> Option<Point
 fn confined(point: Point, shape: &BodyShape) -> Point {
     let rounded = |share: f64| (share * 1000.0).round() / 1000.0;
     let point = Point { x: rounded(point.x), y: rounded(point.y) };
-    match (shape.origin.body(), shape.form) {
+    match (shape.origin.body(), shape.figure.form) {
         // On a string, the place is counted from the nearer end.
         (None, _) => Point { x: point.x.min(1.0 - point.x).clamp(0.01, 0.5), y: 0.0 },
         (Some(body), Form::Line) => Point { y: body.strike.y, ..point },
@@ -199,7 +209,7 @@ fn confined(point: Point, shape: &BodyShape) -> Point {
 
 fn describe(point: Point, shape: &BodyShape) -> String {
     let [x, y] = [point.x, point.y].map(|share| share * 100.0);
-    match shape.form {
+    match shape.figure.form {
         Form::Line => format!("struck at {x:.1} %"),
         Form::Bell => format!("struck at {:.0}° round it", 3.6 * y),
         Form::Round | Form::Bowl => format!("struck at {x:.0} %, {:.0}° round it", 3.6 * y),

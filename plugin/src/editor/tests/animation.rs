@@ -1,8 +1,9 @@
 //! The animated PNG in README: two keys are struck on a bell, which rings down.
 
-use super::pictures::{STEP, differing, finish, rounded};
+use super::pictures::{STEP, differing, facing, finish, rounded};
 use super::sounding::Band;
 use crate::editor::theme::{SIZE, Theme};
+use crate::editor::window::Face;
 use image::codecs::png::PngDecoder;
 use image::{AnimationDecoder as _, RgbaImage};
 use png::{BitDepth, BlendOp, ColorType, Compression, Encoder, Filter};
@@ -11,7 +12,7 @@ use std::io::{BufReader, BufWriter};
 
 const PLACE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/bell.png");
 /// Frames of the animation, frames per second, and passes of the window per frame.
-const FRAMES: usize = 60;
+const FRAMES: usize = 44;
 const PER_SECOND: usize = 15;
 const PASSES: usize = 60 / PER_SECOND;
 /// The frame at which the second key is struck.
@@ -21,7 +22,7 @@ const MOST_BYTES: u64 = 1_500_000;
 
 /// Plays the scene; `draw` is given the number of each frame.
 fn play(mut draw: impl FnMut(usize, &mut Band)) {
-    let mut band = Band::new("Church Bell", SIZE, Theme::Dark);
+    let mut band = Band::of(facing(Face::Play, "Church Bell", SIZE, 1.0, Theme::Dark));
     band.passes(2);
     for frame in 0..FRAMES {
         match frame {

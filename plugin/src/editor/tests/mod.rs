@@ -14,6 +14,7 @@ mod mode_edits;
 mod moving;
 mod paging;
 mod pictures;
+mod playing;
 mod random_events;
 mod renderer;
 mod rings;

@@ -6,7 +6,7 @@ use super::fake_host::FakeHost;
 use super::renderer::Renderer;
 use crate::editor::theme::layout::Layout;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
-use crate::editor::window::Window;
+use crate::editor::window::{Face, Window};
 use crate::params::SprungParams;
 use crate::state::State;
 use egui::{Pos2, Rect, vec2};
@@ -35,8 +35,13 @@ pub(super) struct Stage {
     pub(super) folder: tempfile::TempDir,
 }
 
-/// A window with a factory sound.
+/// A window with a factory sound that shows all of it.
 pub(super) fn stage(sound: &str, size: [u32; 2], scale: f32, theme: Theme) -> Stage {
+    facing(Face::Sound, sound, size, scale, theme)
+}
+
+/// A window with a factory sound.
+pub(super) fn facing(face: Face, sound: &str, size: [u32; 2], scale: f32, theme: Theme) -> Stage {
     let (params, host) = (Arc::new(SprungParams::default()), Arc::new(FakeHost::default()));
     let State { seed, mut view, .. } = State::default();
     view.theme = theme;
@@ -45,6 +50,7 @@ pub(super) fn stage(sound: &str, size: [u32; 2], scale: f32, theme: Theme) -> St
     let mut window = Window::new(params.clone(), Some(Library::at(folder.path())));
     let context = host.context();
     window.open(context.clone());
+    window.turn_to(face);
     let shown = params.clone();
     let mut harness = Harness::builder()
         .with_size(vec2(size[0] as f32, size[1] as f32))
@@ -71,7 +77,7 @@ pub(super) fn compare(name: &str, harness: &mut Harness) {
 
 /// Like [`compare`], for a picture that is stored exactly, since real windows are compared with it.
 #[track_caller]
-fn compare_exactly(name: &str, harness: &mut Harness) {
+pub(super) fn compare_exactly(name: &str, harness: &mut Harness) {
     harness.check_accessibility();
     check_in_steps(name, harness.render().unwrap(), 1);
 }
@@ -99,7 +105,7 @@ fn check_small(name: &str, part: u32, found: &RgbaImage) {
 
 /// Like [`compare`], for a picture that is stored as in [`check_small`].
 #[track_caller]
-fn compare_small(name: &str, part: u32, harness: &mut Harness) {
+pub(super) fn compare_small(name: &str, part: u32, harness: &mut Harness) {
     harness.check_accessibility();
     check_small(name, part, &harness.render().unwrap());
 }
@@ -221,7 +227,7 @@ fn pictures_of_browser_and_manual_in_every_theme_are_as_accepted() {
 fn pictures_of_every_theme_and_scale_are_as_accepted() {
     for theme in Theme::ALL {
         let shown = |size, scale| stage("Marimba", size, scale, theme).harness;
-        compare_exactly(theme.id(), &mut shown(SIZE, 1.0));
+        compare(theme.id(), &mut shown(SIZE, 1.0));
         compare_small(&format!("{}-twice", theme.id()), 2, &mut shown(SIZE, 2.0));
         compare(&format!("{}-least", theme.id()), &mut shown(LEAST_SIZE, 1.0));
     }

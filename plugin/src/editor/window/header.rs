@@ -4,15 +4,33 @@ use super::meter;
 use super::variation::{self, VariationRequest};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{BRAND, GAP, Palette, SMALL, TEXT, Theme, ZOOMS};
-use crate::editor::widgets::buttons::{Look, button};
+use crate::editor::widgets::buttons::{Look, button, tab};
 use crate::editor::widgets::text::line;
 use crate::state::View;
 use egui::{Align2, Id, Popup, PopupCloseBehavior, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use std::collections::BTreeSet;
 
+/// What the window shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(in crate::editor) enum Face {
+    /// The body, to play.
+    #[default]
+    Play,
+    /// All of the sound: modes, pictures, every parameter.
+    Sound,
+}
+
+/// The faces with their names and what they are for.
+const FACES: [(Face, &str, &str); 2] = [
+    (Face::Play, "Play", "The body, what moves it, and the few knobs that matter."),
+    (Face::Sound, "Sound", "All of the sound: its modes, moving pictures, every parameter, routes, kit and tuning."),
+];
+
 /// A request of the user's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Request {
+    /// Show the body to play, or all of the sound.
+    Show(Face),
     /// Load the preset at this distance in the list.
     Step(isize),
     Browse,
@@ -34,6 +52,7 @@ pub(super) struct Header<'a> {
     pub(super) words: &'a str,
     pub(super) is_changed: bool,
     pub(super) is_browsing: bool,
+    pub(super) face: Face,
     /// Whether the second version is shown.
     pub(super) is_b: bool,
     pub(super) view: View,
@@ -53,9 +72,19 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
         left = place.right() + 4.0;
         place
     };
-    let brand = next(if is_narrow { 68.0 } else { 92.0 });
-    line(ui.painter(), brand, Align2::LEFT_CENTER, "Sprung", BRAND, palette.accent_text);
-    let sound = next(if is_narrow { 200.0 } else { 372.0 });
+    if !is_narrow {
+        line(ui.painter(), next(72.0), Align2::LEFT_CENTER, "Sprung", BRAND, palette.accent_text);
+    }
+    for (face, name, help) in FACES {
+        let response = tab(ui, next(if is_narrow { 34.0 } else { 46.0 }), name, face == header.face, palette);
+        if response.hovered() {
+            *controls.hint = Hint::new(name, help);
+        }
+        if response.clicked() {
+            request = Some(Request::Show(face));
+        }
+    }
+    let sound = next(if is_narrow { 196.0 } else { 300.0 });
     request = request.or(name_field(ui, sound, header, is_narrow, controls));
     let undo = controls.history.undo_name().map(|name| format!("Undo {name}"));
     let redo = controls.history.redo_name().map(|name| format!("Redo {name}"));

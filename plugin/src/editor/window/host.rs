@@ -80,6 +80,7 @@ impl Drop for Window {
         self.browser.release(link);
         self.modes.release(link);
         self.displays.release(link);
+        self.play.release(link);
         self.pages.release(link);
         if let Some(host) = self.host.take() {
             let end = || self.interaction.gestures.end(&self.params, &host);

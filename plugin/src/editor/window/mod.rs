@@ -8,6 +8,7 @@ mod status;
 mod variation;
 
 use crate::editor::browser::Browser;
+use crate::editor::controls::files::load;
 use crate::editor::controls::history::History;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, FRAME, Interaction};
@@ -21,16 +22,19 @@ use crate::editor::keyboard::piano::Piano;
 use crate::editor::manual::Manual;
 use crate::editor::modes::ModesView;
 use crate::editor::pages::{self, Pages};
+use crate::editor::play::PlayPage;
 use crate::editor::routes::learn;
 use crate::editor::theme::layout::Layout;
 use crate::editor::theme::{Theme, install_fonts};
 use crate::params::SprungParams;
 use crate::state::State;
 use egui::{Key, Ui};
+pub(super) use header::Face;
 use header::{Header, Request};
 use meter::Meter;
 use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
+use sprung::preset::Playable;
 use sprung::preset::library::Library;
 use status::{Load, StatusLine};
 use std::collections::BTreeSet;
@@ -39,6 +43,9 @@ use std::sync::Arc;
 
 /// Longest time in seconds by which moving pictures go on in one pass: after a pause they go on where they were.
 const LONGEST: f32 = 0.25;
+
+/// The sound of a first window.
+const INVITING: &str = "Church Bell";
 
 /// The view that is shown in place of modes and parameters.
 #[derive(Clone, Copy, PartialEq)]
@@ -65,6 +72,8 @@ pub(super) struct Window {
     locked: BTreeSet<&'static str>,
     seed: u64,
     focus: Focus,
+    face: Face,
+    play: PlayPage,
     pages: Pages,
     manual: Manual,
     fitting: Fitting,
@@ -107,6 +116,8 @@ impl Window {
             // A different seed in each window.
             seed: RandomState::new().hash_one(0_u8),
             focus: Focus::default(),
+            face: Face::default(),
+            play: PlayPage::default(),
             pages: Pages::default(),
             manual: Manual::default(),
             fitting: Fitting::default(),
@@ -123,8 +134,20 @@ impl Window {
         }
     }
 
+    /// Shows another face.
+    pub(super) fn turn_to(&mut self, face: Face) {
+        (self.face, self.over) = (face, None);
+    }
+
     /// Prepares the window for being shown by a host.
+    ///
+    /// A plain sine invites nobody: the first window of an instance in which nothing was loaded brings a sound with a body.
     pub(super) fn open(&mut self, host: GuiContext) {
+        if self.params.is_fresh()
+            && let Ok(inviting) = Playable::find(INVITING)
+        {
+            load(inviting, &self.params, &host);
+        }
         self.host = Some(host);
         self.applied = None;
     }
@@ -172,6 +195,7 @@ impl Window {
             words: &self.shown.words(),
             is_changed: controls.history.is_changed(),
             is_browsing: self.over == Some(Over::Browser),
+            face: self.face,
             is_b: self.is_b,
             view,
             locked: &self.locked,
@@ -180,10 +204,13 @@ impl Window {
         let request = header::show(ui, layout.header, &header, &mut controls);
         let down = (0..16).fold(0, |down, channel| down | telemetry.keys(channel));
         let voices = if is_silent { 0 } else { snapshot.voices };
-        if self.over.is_some() {
+        if self.over.is_some() || self.face != Face::Sound {
             self.modes.cancel(&mut controls);
             self.displays.cancel(&mut controls);
             self.pages.leave(&mut controls);
+        }
+        if self.over.is_some() || self.face != Face::Play {
+            self.play.leave(&mut controls);
         }
         match self.over {
             Some(Over::Browser) => {
@@ -195,6 +222,11 @@ impl Window {
             Some(Over::Manual) => {
                 if self.manual.show(ui, layout.page(), palette) {
                     self.over = None;
+                }
+            }
+            None if self.face == Face::Play => {
+                if let Some(message) = self.play.show(ui, layout.page(), &self.shown, &energies, &mut controls) {
+                    self.message = message;
                 }
             }
             None => {

@@ -50,6 +50,7 @@ impl Window {
 
     pub(super) fn carry_out(&mut self, request: Request, ui: &Ui, host: &GuiContext) {
         match request {
+            Request::Show(face) => self.turn_to(face),
             Request::Browse | Request::Save => {
                 let closes = self.over == Some(Over::Browser) && request == Request::Browse;
                 self.over = (!closes).then_some(Over::Browser);

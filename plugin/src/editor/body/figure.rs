@@ -1,0 +1,83 @@
+//! How a body looks at rest: its form, its thickness and the colour of its material.
+
+use super::form::Form;
+use egui::Color32;
+use sprung::sound::bodies::{Body, Model, Point};
+
+/// What is painted of a body.
+pub(crate) struct Figure {
+    pub(super) form: Form,
+    /// How many points there are along `x` and along `y`.
+    pub(super) grid: [usize; 2],
+    pub(super) points: Vec<Point>,
+    pub(super) tint: Color32,
+    /// Thickness of a line as a share of the picture's height; 0 for a string.
+    pub(super) thickness: f32,
+}
+
+impl Figure {
+    /// The figure of a body in a large picture.
+    pub(super) fn of(body: &Body) -> Self {
+        let form = Form::of(&body.model);
+        Self::with_grid(body, form, form.grid())
+    }
+
+    /// The figure of a body in a picture of the size of a letter or two.
+    pub(crate) fn small(body: &Body) -> Self {
+        let form = Form::of(&body.model);
+        let grid = match form {
+            Form::Line => [33, 1],
+            Form::Plate { .. } => [3, 3],
+            Form::Round => [3, 25],
+            Form::Bell | Form::Bowl => [9, 25],
+        };
+        let figure = Self::with_grid(body, form, grid);
+        // A bar of its true thickness would be a line.
+        Self { thickness: 2.0 * figure.thickness, ..figure }
+    }
+
+    fn with_grid(body: &Body, form: Form, grid: [usize; 2]) -> Self {
+        let thickness = match body.model {
+            Model::String => 0.0,
+            Model::OpenTube | Model::StoppedTube | Model::Cone { .. } | Model::TubularBell => 0.11,
+            _ => 0.07,
+        };
+        Self { form, grid, points: Form::points(grid), tint: tint(body.material.id), thickness }
+    }
+}
+
+/// The colour of a material in white light.
+pub(crate) fn tint(material: &str) -> Color32 {
+    let [red, green, blue] = match material {
+        "steel" | "wire" | "snare_wire" => [168, 174, 184],
+        "aluminium" => [196, 199, 205],
+        "brass" => [206, 168, 84],
+        "bronze" => [176, 122, 62],
+        "glass" => [168, 206, 214],
+        "porcelain" => [226, 222, 212],
+        "rosewood" => [134, 70, 46],
+        "maple" => [206, 164, 112],
+        "spruce" => [222, 190, 142],
+        "rubber" => [74, 72, 78],
+        "skin" => [222, 204, 172],
+        "mylar" => [212, 216, 220],
+        "nylon" => [224, 220, 204],
+        "plastic" => [188, 176, 196],
+        _ => [190, 186, 180],
+    };
+    Color32::from_rgb(red, green, blue)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::sound::bodies::MATERIALS;
+
+    #[test]
+    fn every_material_but_air_has_a_colour_of_its_own() {
+        let other = tint("");
+        for material in MATERIALS.iter().filter(|material| material.id != "air") {
+            assert_ne!(tint(material.id), other, "{}", material.id);
+        }
+    }
+}

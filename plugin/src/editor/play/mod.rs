@@ -1,0 +1,160 @@
+//! The page that a window opens with: the body large, what moves it, what it is and stands on, and the few knobs that matter.
+
+mod movers;
+mod stage;
+mod things;
+
+use crate::editor::body::view::BodyView;
+use crate::editor::controls::Controls;
+use crate::editor::controls::shown::Shown;
+use crate::editor::keyboard::audition::Audition;
+use crate::editor::routes::Ring;
+use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, SMALL, TITLE_HEIGHT};
+use crate::editor::widgets::knob;
+use crate::editor::widgets::text::line;
+use crate::link::Link;
+use egui::{Align2, Rect, ScrollArea, Sense, Ui, UiBuilder, vec2};
+use sprung::params::{PARAMS, Param, ParamInfo};
+use std::time::Duration;
+
+/// The smallest height of a page with titles, and with all tiles.
+const TALL: f32 = 420.0;
+/// Width of the columns beside the body, on a page that is tall and on one that is not.
+const SIDES: [[f32; 2]; 2] = [[126.0, 170.0], [52.0, 130.0]];
+
+/// Knobs that matter for most sounds, and their names.
+const ESSENTIALS: [(Param, &str); 6] = [
+    (Param::Decay, "Decay"),
+    (Param::Tilt, "Brightness"),
+    (Param::Width, "Width"),
+    (Param::VaryPosition, "Vary"),
+    (Param::SpaceMix, "Space mix"),
+    (Param::SpaceSize, "Space size"),
+];
+
+/// The state of the page.
+#[derive(Default)]
+pub(super) struct PlayPage {
+    body: BodyView,
+    things: things::Things,
+    audition: Audition,
+    /// Whether a note has sounded, so that nobody has to be told how to play one.
+    was_played: bool,
+}
+
+impl PlayPage {
+    /// Drops the user's action, and releases the held key.
+    pub(super) fn leave(&mut self, controls: &mut Controls) {
+        self.body.cancel(controls);
+        self.release(controls.params.link());
+    }
+
+    /// Releases the held key.
+    pub(super) fn release(&mut self, link: &Link) {
+        self.audition.release(link);
+    }
+
+    /// Shows the page for the energies of the modes. Returns a message.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        shown: &Shown,
+        energies: &[f32],
+        controls: &mut Controls,
+    ) -> Option<String> {
+        let is_tall = rect.height() >= TALL;
+        let title = if is_tall { TITLE_HEIGHT } else { 0.0 };
+        let stage = rect.with_max_y(rect.bottom() - CELL_HEIGHT - title - 2.0 * PADDING - GAP);
+        let (now, link) = (ui.input(|input| input.time), controls.params.link());
+        self.audition.follow_time(now, link);
+        self.was_played |= !controls.notes.is_empty();
+        controls.palette.paint_panel(ui.painter(), stage);
+        let [left, right] = SIDES[usize::from(!is_tall)];
+        let inner = stage.shrink(PADDING);
+        let middle = inner.with_min_x(inner.left() + left + GAP).with_max_x(inner.right() - right - GAP);
+        stage::paint_floor(ui.painter(), stage, middle, controls);
+        self.stand(ui, stage, middle, shown, energies, controls);
+        let mut message = None;
+        if shown.preset().is_some() {
+            let at = inner.with_max_x(inner.left() + left);
+            let is_moved = movers::show(ui, at, is_tall, controls);
+            let at = inner.with_min_x(inner.right() - right);
+            let changed = self.things.show(ui, at, is_tall, shown, controls);
+            if is_moved || changed.is_some() {
+                self.audition.strike(shown.guide().home, crate::editor::keyboard::audition::VELOCITY, now, link);
+            }
+            message = changed.and_then(Result::err);
+        }
+        stage::show_spaces(ui, inner.with_min_y(inner.bottom() - 22.0), controls);
+        if let Some(rest) = self.audition.rest(now) {
+            ui.ctx().request_repaint_after(Duration::from_secs_f64(rest));
+        }
+        knobs(ui, rect.with_min_y(stage.bottom() + GAP), title, shown, controls);
+        message
+    }
+
+    /// Shows the body, which can be struck.
+    fn stand(&mut self, ui: &Ui, stage: Rect, middle: Rect, shown: &Shown, energies: &[f32], controls: &mut Controls) {
+        let palette = controls.palette;
+        let rect = stage::place_of_body(stage, middle);
+        // A body without places sounds wherever it is clicked. The place that can be dragged lies over this.
+        let response = ui.interact(middle, egui::Id::unique("stage"), Sense::click());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Strike"));
+        let is_struck = response.clicked();
+        let caption = self.body.show(ui, rect, shown, energies, &mut self.audition, controls);
+        if is_struck {
+            let now = ui.input(|input| input.time);
+            let velocity = crate::editor::body::view::velocity(ui);
+            self.audition.strike(shown.guide().home, velocity, now, controls.params.link());
+        }
+        let text = match (shown.preset(), self.was_played) {
+            (None, _) => "A kit: each key has a body of its own. Click to strike the first.".to_owned(),
+            (_, false) => "Click it to strike it, drag to strike it elsewhere.".to_owned(),
+            (_, true) => caption,
+        };
+        let under = middle.with_min_y(middle.bottom() - 44.0).with_max_y(middle.bottom() - 26.0);
+        line(ui.painter(), under, Align2::CENTER_CENTER, &text, SMALL, palette.muted);
+    }
+}
+
+/// Shows the macros that have names, the essential knobs and the gain.
+fn knobs(ui: &mut Ui, rect: Rect, title: f32, shown: &Shown, controls: &mut Controls) {
+    let palette = controls.palette;
+    palette.paint_panel(ui.painter(), rect);
+    let named = |info: &&'static ParamInfo| shown.guide().macro_name(info.id).is_some();
+    let macros: Vec<(&ParamInfo, String)> = PARAMS
+        .iter()
+        .filter(named)
+        .map(|info| (info, shown.guide().macro_name(info.id).unwrap_or_default().to_owned()))
+        .collect();
+    let has_space = controls.value(Param::Space.info()) > 0.0;
+    let matters = |param: &Param| has_space || !matches!(param, Param::SpaceMix | Param::SpaceSize);
+    let essentials = ESSENTIALS.into_iter().filter(|(param, _)| matters(param));
+    let essentials = essentials.map(|(param, name)| (param.info(), name.to_owned())).collect();
+    let groups: [(&str, Vec<_>); 3] =
+        [("MACROS", macros), ("ESSENTIALS", essentials), ("OUTPUT", vec![(Param::Gain.info(), "Volume".to_owned())])];
+    let count: usize = groups.iter().map(|(_, knobs)| knobs.len()).sum();
+    let gaps = groups.iter().filter(|(_, knobs)| !knobs.is_empty()).count() as f32 * 2.0 * GAP;
+    let inside = rect.shrink(PADDING);
+    let width = ((inside.width() - gaps) / count as f32).floor().clamp(CELL_WIDTH[0], CELL_WIDTH[1] + 12.0);
+    let mut inner = ui.new_child(UiBuilder::new().id_salt("play knobs").max_rect(inside));
+    ScrollArea::horizontal().id_salt("play").auto_shrink(false).show(&mut inner, |ui| {
+        let size = vec2(count as f32 * width + gaps, inside.height());
+        let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+        let mut corner = area.min;
+        for (name, knobs) in groups.into_iter().filter(|(_, knobs)| !knobs.is_empty()) {
+            if title > 0.0 {
+                let place = Rect::from_min_size(corner, vec2(knobs.len() as f32 * width, title - 4.0));
+                line(ui.painter(), place, Align2::LEFT_CENTER, name, SMALL, palette.muted);
+            }
+            for (info, name) in knobs {
+                let cell = Rect::from_min_size(corner + vec2(0.0, title), vec2(width, CELL_HEIGHT - 4.0));
+                let ring = Ring::of(info, &shown.patch().routes, controls);
+                knob::show(ui, cell.shrink2(vec2(1.0, 0.0)), info, &name, &ring, controls);
+                corner.x += width;
+            }
+            corner.x += 2.0 * GAP;
+        }
+    });
+}

@@ -1,0 +1,125 @@
+//! What moves the body, as tiles: a click lets one of them act alone, its lamp adds it to the others.
+
+use crate::editor::controls::files::load;
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::theme::{GAP, Palette, RADIUS, SMALL, TEXT};
+use crate::editor::widgets::text::line;
+use egui::{Align2, Color32, Id, Painter, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use sprung::params::Param;
+use sprung::preset::Playable;
+
+/// Exciters with their names, the levels that switch them on where they were off, in dB, and what they do.
+const MOVERS: [(Param, &str, f32, &str); 5] = [
+    (Param::MalletLevel, "Mallet", 0.0, "A mallet strikes it."),
+    (Param::PluckLevel, "Pluck", 0.0, "A finger or a plectrum pulls it aside and lets go."),
+    (Param::NoiseLevel, "Noise", -6.0, "A burst of noise: a brush, a scrape, breath."),
+    (Param::BowLevel, "Bow", 0.0, "A bow, for as long as a key is held."),
+    (Param::InputLevel, "Input", 0.0, "Incoming sound drives it, for as long as a key is held."),
+];
+
+/// Shows the tiles, with their names if there is room. Returns whether another exciter acts alone now.
+pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) -> bool {
+    let palette = controls.palette;
+    let top = if is_tall { 18.0 } else { 0.0 };
+    if is_tall {
+        let title = rect.with_max_y(rect.top() + 14.0);
+        line(ui.painter(), title, Align2::LEFT_CENTER, "What moves it", SMALL, palette.muted);
+    }
+    let room = (rect.height() - top - 26.0) / MOVERS.len() as f32 - GAP / 2.0;
+    let height = room.min(46.0);
+    let mut alone = None;
+    for (place, (param, name, level, help)) in MOVERS.into_iter().enumerate() {
+        let corner = rect.min + vec2(0.0, top + place as f32 * (height + GAP / 2.0));
+        let tile = Rect::from_min_size(corner, vec2(rect.width(), height));
+        let is_on = is_on(param, controls);
+        let response = ui.interact(tile, Id::unique(("mover", name)), Sense::click());
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_on, format!("{name} alone")));
+        let lamp = Rect::from_center_size(tile.right_top() + vec2(-9.0, 0.5 * height.min(20.0)), vec2(18.0, 20.0));
+        let lamp_response = ui.interact(lamp, Id::unique(("lamp", name)), Sense::click());
+        lamp_response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_on, name));
+        if response.hovered() || lamp_response.hovered() {
+            *controls.hint = Hint::new(name, format!("{help} Click: it alone. Its lamp adds it to the others."));
+        }
+        if lamp_response.clicked() {
+            controls.set(param.info(), if is_on { param.info().min } else { level });
+        } else if response.clicked() {
+            alone = Some((param, name, level));
+        }
+        let is_hovered = response.hovered();
+        let edge = match (is_on, response.has_focus() || lamp_response.has_focus()) {
+            (_, true) => Stroke::new(1.5, palette.text),
+            (true, false) => Stroke::new(1.0, palette.accent),
+            (false, false) => Stroke::new(1.0, palette.outline),
+        };
+        let face = if is_on || is_hovered { palette.raised } else { palette.ground };
+        ui.painter().rect(tile, RADIUS, face, edge, StrokeKind::Inside);
+        let colour = if is_on { palette.accent } else { palette.muted };
+        let picture = Rect::from_min_size(tile.min, vec2(36.0, height)).shrink(if is_tall { 9.0 } else { 6.0 });
+        paint(ui.painter(), picture, param, colour, palette);
+        if is_tall {
+            let text = if is_on || is_hovered { palette.text } else { palette.muted };
+            line(ui.painter(), tile.with_min_x(tile.left() + 44.0), Align2::LEFT_CENTER, name, TEXT, text);
+        }
+        if is_on {
+            ui.painter().circle_filled(lamp.center(), 3.5, palette.accent);
+        } else {
+            ui.painter().circle_stroke(lamp.center(), 3.0, Stroke::new(1.0, palette.muted));
+        }
+    }
+    let Some((param, name, level)) = alone else { return false };
+    act_alone(param, name, level, controls);
+    true
+}
+
+fn is_on(param: Param, controls: &Controls) -> bool {
+    controls.value(param.info()) > param.info().min
+}
+
+/// Lets one exciter act and no other, as one step that can be undone.
+fn act_alone(param: Param, name: &str, level: f32, controls: &mut Controls) {
+    controls.release();
+    let mut state = controls.params.state();
+    let Playable::Preset(preset) = &mut state.playable else { return };
+    preset.patch.values = state.values;
+    for (other, ..) in MOVERS {
+        let value = match (other == param, is_on(other, controls)) {
+            (true, true) => continue,
+            (true, false) => level,
+            (false, _) => other.info().min,
+        };
+        preset.patch.set(other, value);
+    }
+    controls.history.begin(controls.params);
+    load(state.playable, controls.params, controls.host);
+    controls.history.end(format!("{name} alone"), controls.params);
+}
+
+/// A little picture of an exciter.
+fn paint(painter: &Painter, rect: Rect, param: Param, colour: Color32, palette: &Palette) {
+    let stroke = Stroke::new(1.6, colour);
+    let at = |x: f32, y: f32| pos2(rect.left() + x * rect.width(), rect.top() + y * rect.height());
+    match param {
+        Param::MalletLevel => {
+            painter.line_segment([at(0.0, 1.0), at(0.7, 0.3)], stroke);
+            painter.circle_filled(at(0.74, 0.26), 0.2 * rect.height(), colour);
+        }
+        Param::PluckLevel => {
+            painter.add(Shape::line(vec![at(0.15, 0.1), at(0.85, 0.1), at(0.5, 0.75), at(0.15, 0.1)], stroke));
+            painter.line_segment([at(0.0, 0.95), at(1.0, 0.95)], Stroke::new(1.0, palette.muted));
+        }
+        Param::NoiseLevel => {
+            for [x, y] in [[0.1, 0.5], [0.25, 0.2], [0.35, 0.75], [0.5, 0.45], [0.62, 0.15], [0.7, 0.8], [0.9, 0.4]] {
+                painter.circle_filled(at(x, y), 1.6, colour);
+            }
+        }
+        Param::BowLevel => {
+            painter.add(Shape::line(vec![at(0.0, 0.9), at(0.2, 0.45), at(0.6, 0.2), at(1.0, 0.1)], stroke));
+            painter.line_segment([at(0.0, 0.9), at(1.0, 0.1)], Stroke::new(1.0, colour));
+        }
+        _ => {
+            let points =
+                [[0.0, 0.5], [0.2, 0.5], [0.3, 0.1], [0.45, 0.9], [0.6, 0.2], [0.7, 0.6], [0.8, 0.5], [1.0, 0.5]];
+            painter.add(Shape::line(points.map(|[x, y]| at(x, y)).to_vec(), stroke));
+        }
+    }
+}

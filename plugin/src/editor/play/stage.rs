@@ -1,0 +1,114 @@
+//! The floor that the body stands on, which is its space, and the place of the body.
+
+use crate::editor::controls::Controls;
+use crate::editor::theme::{Palette, SMALL};
+use crate::editor::widgets::buttons::tab;
+use crate::editor::widgets::text::{line, width};
+use egui::epaint::{Mesh, Vertex, WHITE_UV};
+use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
+use sprung::params::Param;
+use std::f32::consts::TAU;
+
+/// Names of the spaces as floors, by their values.
+const FLOORS: [&str; 4] = ["Nothing", "Plate", "Spring", "Room"];
+
+/// Height of the floor's far edge, as a share of the stage's.
+const HORIZON: f32 = 0.64;
+
+/// The part of the stage in which the body is.
+pub(super) fn place_of_body(stage: Rect, middle: Rect) -> Rect {
+    middle.with_max_y(stage.top() + 0.9 * stage.height()).shrink2(vec2(6.0, 4.0))
+}
+
+/// Paints the floor, with waves as far as the space is mixed in.
+pub(super) fn paint_floor(painter: &Painter, stage: Rect, middle: Rect, controls: &Controls) {
+    let palette = controls.palette;
+    let far = stage.top() + HORIZON * stage.height();
+    let edge = 0.36 * stage.width();
+    let [left, right] = [stage.center().x - edge, stage.center().x + edge];
+    let corner = |pos: Pos2, color: Color32| Vertex { pos, uv: WHITE_UV, color };
+    let near = palette.raised.lerp_to_gamma(palette.panel, 0.2);
+    let mut floor = Mesh::default();
+    floor.vertices.extend([
+        corner(pos2(left, far), palette.panel),
+        corner(pos2(right, far), palette.panel),
+        corner(stage.right_bottom(), near),
+        corner(stage.left_bottom(), near),
+    ]);
+    floor.add_triangle(0, 1, 2);
+    floor.add_triangle(0, 2, 3);
+    let painter = painter.with_clip_rect(stage.shrink(1.0));
+    painter.add(floor);
+    painter.line_segment([pos2(left, far), pos2(right, far)], Stroke::new(1.0, palette.line));
+    let space = controls.value(Param::Space.info());
+    let mix = if space > 0.0 { controls.value(Param::SpaceMix.info()) / 100.0 } else { 0.0 };
+    let line = Stroke::new(1.2, palette.line.lerp_to_gamma(palette.accent, 0.15 + 0.6 * mix));
+    let centre = pos2(middle.center().x, stage.top() + 0.84 * stage.height());
+    match controls.value(Param::Space.info()) as usize {
+        1 => (1..=5).for_each(|ring| ellipse(&painter, centre, ring as f32 * 0.085 * stage.width(), line)),
+        2 => (0..3).for_each(|coil| {
+            spring(&painter, [left, right], far + (stage.bottom() - far) * (0.2 + 0.22 * coil as f32), line)
+        }),
+        3 => room(&painter, stage, [left, right], far, line),
+        _ => shadow(&painter, centre, 0.14 * stage.width(), palette),
+    }
+}
+
+fn ellipse(painter: &Painter, centre: Pos2, radius: f32, stroke: Stroke) {
+    let point = |step: usize| centre + vec2(1.0, 0.26) * (radius * egui::Vec2::angled(TAU * step as f32 / 48.0));
+    painter.add(Shape::closed_line((0..48).map(point).collect(), stroke));
+}
+
+fn spring(painter: &Painter, [left, right]: [f32; 2], y: f32, stroke: Stroke) {
+    let point = |step: usize| {
+        pos2(left + (right - left) * step as f32 / 240.0, y + 5.0 * egui::Vec2::angled(TAU * step as f32 / 6.0).y)
+    };
+    painter.add(Shape::line((0..=240).map(point).collect(), stroke));
+}
+
+fn room(painter: &Painter, stage: Rect, [left, right]: [f32; 2], far: f32, stroke: Stroke) {
+    let top = stage.top() + 0.06 * stage.height();
+    painter.add(Shape::line(vec![pos2(left, far), pos2(left, top), pos2(right, top), pos2(right, far)], stroke));
+    painter.line_segment([pos2(left, top), stage.left_top()], stroke);
+    painter.line_segment([pos2(right, top), stage.right_top()], stroke);
+    for share in [0.2, 0.4, 0.6, 0.8] {
+        let from = pos2(left + (right - left) * share, far);
+        painter.line_segment([from, pos2(stage.left() + stage.width() * share, stage.bottom())], stroke);
+    }
+}
+
+fn shadow(painter: &Painter, centre: Pos2, radius: f32, palette: &Palette) {
+    let point = |step: usize| centre + vec2(1.0, 0.22) * (radius * egui::Vec2::angled(TAU * step as f32 / 32.0));
+    let fill = palette.ground.gamma_multiply(0.7);
+    painter.add(Shape::convex_polygon((0..32).map(point).collect(), fill, Stroke::NONE));
+}
+
+/// Shows what the body can stand on.
+pub(super) fn show_spaces(ui: &Ui, rect: Rect, controls: &mut Controls) {
+    let palette = controls.palette;
+    let title = "It stands on";
+    let place =
+        line(ui.painter(), rect.with_max_x(rect.left() + 84.0), Align2::LEFT_CENTER, title, SMALL, palette.muted);
+    let mut left = place.right() + 10.0;
+    let now = controls.value(Param::Space.info()) as usize;
+    for (space, name) in FLOORS.into_iter().enumerate() {
+        let size = vec2(width(ui.painter(), name, SMALL + 1.0) + 14.0, rect.height());
+        let place = Rect::from_min_size(pos2(left, rect.top()), size);
+        left = place.right() + 2.0;
+        if tab(ui, place, name, space == now, palette).clicked() {
+            controls.set(Param::Space.info(), space as f32);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::FLOORS;
+    use sprung::params::{Choice, Space};
+
+    #[test]
+    fn every_space_is_a_floor() {
+        assert_eq!(FLOORS[1..].iter().map(|name| name.to_lowercase()).collect::<Vec<_>>(), Space::NAMES[1..]);
+        assert_eq!(FLOORS.len(), Space::ALL.len());
+    }
+}

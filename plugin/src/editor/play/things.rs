@@ -1,0 +1,178 @@
+//! What the body is and what it is made of, each chosen by its picture.
+
+use crate::editor::body::edit::BodyEdit;
+use crate::editor::body::face;
+use crate::editor::body::figure::{Figure, tint};
+use crate::editor::body::origin::{Origin, model_name};
+use crate::editor::controls::shown::Shown;
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::theme::{GAP, RADIUS, SMALL};
+use crate::editor::widgets::choice::Field;
+use crate::editor::widgets::text::line;
+use crate::loaded::Loaded;
+use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
+use sprung::sound::bodies::{Body, MATERIALS, Model};
+use std::sync::Arc;
+
+/// Models with tiles, and their names there. All others are in the list below.
+const TILES: [(&str, &str); 9] = [
+    ("free_bar", "Bar"),
+    ("membrane", "Head"),
+    ("free_plate", "Plate"),
+    ("church_bell", "Bell"),
+    ("string", "String"),
+    ("open_tube", "Tube"),
+    ("glass", "Glass"),
+    ("free_disc", "Gong"),
+    ("bowl", "Bowl"),
+];
+/// Materials with a disc of their colour.
+const DISCS: [&str; 10] =
+    ["bronze", "steel", "brass", "aluminium", "glass", "rosewood", "maple", "spruce", "porcelain", "nylon"];
+
+/// Columns of tiles, and of discs.
+const COLUMNS: [usize; 2] = [3, 5];
+
+/// The state of the column.
+#[derive(Default)]
+pub(super) struct Things {
+    /// The loaded sound, and the body from which its modes are made.
+    read: Option<(Arc<Loaded>, Origin)>,
+    figures: Vec<Figure>,
+}
+
+impl Things {
+    /// Shows the column. Returns the result of a change of the body, if there was one.
+    pub(super) fn show(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        is_tall: bool,
+        shown: &Shown,
+        controls: &mut Controls,
+    ) -> Option<Result<(), String>> {
+        let origin = match &self.read {
+            Some((loaded, origin)) if Arc::ptr_eq(loaded, shown.loaded()) => origin.clone(),
+            _ => Origin::of(&shown.patch().modes),
+        };
+        self.read = Some((shown.loaded().clone(), origin.clone()));
+        if self.figures.is_empty() {
+            let model = |id| Model::find(id).cloned().unwrap_or(Model::String);
+            self.figures = TILES.iter().map(|(id, _)| Figure::small(&Body::new(model(id)))).collect();
+        }
+        let (changed, what) = if is_tall {
+            self.tiles(ui, rect, &origin, controls)?
+        } else {
+            let model = model_field(ui, rect.with_max_y(rect.top() + 22.0), &origin, controls);
+            let below = rect.with_min_y(rect.top() + 28.0).with_max_y(rect.top() + 50.0);
+            model.or_else(|| material_field(ui, below, &origin, controls))?
+        };
+        let mut edit = BodyEdit::begin(&origin, shown.loaded(), controls);
+        edit.change(changed, what);
+        Some(edit.end(controls))
+    }
+
+    fn tiles(&self, ui: &Ui, rect: Rect, origin: &Origin, controls: &mut Controls) -> Option<(Origin, String)> {
+        let palette = controls.palette;
+        let mut top = rect.top();
+        let mut next = |height: f32| {
+            let place = rect.with_min_y(top).with_max_y(top + height);
+            top += height + GAP / 2.0;
+            place
+        };
+        line(ui.painter(), next(14.0), Align2::LEFT_CENTER, "What it is", SMALL, palette.muted);
+        let mut picked = None;
+        let [columns, discs] = COLUMNS;
+        let size = vec2((rect.width() - 8.0) / columns as f32, 52.0);
+        let tiles = next(TILES.len().div_ceil(columns) as f32 * (size.y + 4.0));
+        let now = origin.body().map(|body| body.model.id());
+        for (place, ((id, name), figure)) in TILES.iter().zip(&self.figures).enumerate() {
+            let offset = vec2((place % columns) as f32, (place / columns) as f32) * (size + vec2(4.0, 4.0));
+            let tile = Rect::from_min_size(tiles.min + offset, size);
+            let (response, is_now) = (choice(ui, tile, ("thing", name), now == Some(id)), now == Some(id));
+            let face = if is_now || response.hovered() { palette.raised } else { palette.ground };
+            ui.painter().rect(tile, RADIUS, face, edge(&response, is_now, controls), StrokeKind::Inside);
+            let picture = tile.with_max_y(tile.bottom() - 15.0).shrink2(vec2(7.0, 4.0));
+            face::paint(ui.painter(), picture, figure, &[], None, palette);
+            let colour = if is_now { palette.text } else { palette.muted };
+            line(ui.painter(), tile.with_min_y(tile.bottom() - 16.0), Align2::CENTER_CENTER, name, SMALL, colour);
+            if response.clicked() && !is_now {
+                picked = Some((origin.with_model(false, Model::find(id)), format!("model {}", model_name(id))));
+            }
+        }
+        picked = model_field(ui, next(20.0), origin, controls).or(picked);
+        let Some(body) = origin.body() else { return picked };
+        next(2.0);
+        line(ui.painter(), next(14.0), Align2::LEFT_CENTER, "What it is made of", SMALL, palette.muted);
+        let pitch = rect.width() / discs as f32;
+        let rows = next(2.0 * pitch);
+        for (place, id) in DISCS.into_iter().enumerate() {
+            let offset = vec2((place % discs) as f32 + 0.5, (place / discs) as f32 + 0.5) * pitch;
+            let disc = Rect::from_center_size(rows.min + offset, vec2(pitch, pitch));
+            let is_now = body.material.id == id;
+            let response = choice(ui, disc, ("material", id), is_now);
+            if response.hovered() {
+                *controls.hint = Hint::new(id, "Make it of this material.");
+            }
+            let radius = 0.36 * pitch;
+            ui.painter().circle(disc.center(), radius, tint(id), Stroke::new(1.0, palette.line));
+            ui.painter().circle_filled(
+                disc.center() - vec2(0.3, 0.3) * radius,
+                0.22 * radius,
+                palette.text.gamma_multiply(0.35),
+            );
+            if is_now || response.has_focus() {
+                ui.painter().circle_stroke(disc.center(), radius + 2.5, edge(&response, is_now, controls));
+            }
+            if response.clicked() && !is_now {
+                picked = made_of(origin, id).or(picked);
+            }
+        }
+        material_field(ui, next(20.0), origin, controls).or(picked)
+    }
+}
+
+/// A picture to click, which is chosen or not.
+fn choice(ui: &Ui, rect: Rect, (kind, name): (&'static str, &str), is_now: bool) -> Response {
+    let response = ui.interact(rect, Id::unique((kind, name)), Sense::click());
+    response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_now, format!("{kind}: {name}")));
+    response
+}
+
+fn edge(response: &Response, is_now: bool, controls: &Controls) -> Stroke {
+    let palette = controls.palette;
+    match (response.has_focus(), is_now) {
+        (true, _) => Stroke::new(1.5, palette.text),
+        (false, true) => Stroke::new(1.5, palette.accent),
+        (false, false) => Stroke::new(1.0, palette.outline),
+    }
+}
+
+/// The list of all models.
+fn model_field(ui: &Ui, rect: Rect, origin: &Origin, controls: &Controls) -> Option<(Origin, String)> {
+    let names: Vec<String> = Model::ALL.iter().map(|(id, _)| model_name(id)).collect();
+    let now = origin.body().map_or("a table of modes".to_owned(), |body| model_name(body.model.id()));
+    let picked = field(ui, rect, "All bodies", &now, &names, controls)?;
+    let (_, model) = &Model::ALL[picked];
+    Some((origin.with_model(false, Some(model)), format!("model {}", names[picked])))
+}
+
+/// The list of all materials.
+fn material_field(ui: &Ui, rect: Rect, origin: &Origin, controls: &Controls) -> Option<(Origin, String)> {
+    let now = origin.body()?.material.id.replace('_', " ");
+    let names: Vec<String> = MATERIALS.iter().map(|material| material.id.replace('_', " ")).collect();
+    let picked = field(ui, rect, "All materials", &now, &names, controls)?;
+    made_of(origin, MATERIALS[picked].id)
+}
+
+fn field(ui: &Ui, rect: Rect, name: &str, value: &str, names: &[String], controls: &Controls) -> Option<usize> {
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    Field { id: Id::unique(name), name, value, is_default: true }.show(ui, rect, &names, controls.palette).1
+}
+
+/// The body of another material.
+fn made_of(origin: &Origin, id: &str) -> Option<(Origin, String)> {
+    let mut changed = origin.clone();
+    changed.body_mut()?.material = *MATERIALS.iter().find(|material| material.id == id)?;
+    Some((changed, format!("material {}", id.replace('_', " "))))
+}

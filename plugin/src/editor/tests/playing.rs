@@ -1,0 +1,157 @@
+//! The page that a window opens with.
+
+use super::fake_host::FakeHost;
+use super::pictures::{compare, compare_exactly, compare_small, facing, finish};
+use super::sounding::Band;
+use crate::editor::body::origin::Origin;
+use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
+use crate::editor::window::{Face, Window};
+use crate::link::Touch;
+use crate::params::SprungParams;
+use crate::state::State;
+use egui::{Key, Modifiers, Role};
+use egui_kittest::kittest::Queryable as _;
+use sprung::params::Param;
+use sprung::preset::Playable;
+use std::sync::Arc;
+
+impl Band {
+    fn click(&mut self, role: Role, name: &str) {
+        self.stage.harness.get_by_role_and_label(role, name).click();
+        self.passes(4);
+    }
+
+    fn value(&self, param: Param) -> f32 {
+        self.stage.params.state().values.get(param)
+    }
+
+    fn undo(&mut self) {
+        self.click(Role::Button, "Undo");
+    }
+
+    /// The model and the material of the body.
+    fn thing(&self) -> [&'static str; 2] {
+        let loaded = self.stage.params.loaded();
+        let origin = Origin::of(&loaded.kit.sounds()[0].patch().modes);
+        origin.body().map_or([""; 2], |body| [body.model.id(), body.material.id])
+    }
+
+    /// How many strikes the window has played since this was called last.
+    fn strikes(&mut self) -> usize {
+        std::mem::take(&mut self.heard).iter().filter(|touch| matches!(touch, Touch::Down { .. })).count()
+    }
+}
+
+fn playing(sound: &str) -> Band {
+    Band::of(facing(Face::Play, sound, SIZE, 1.0, Theme::Dark))
+}
+
+#[test]
+fn pictures_of_the_page_are_as_accepted() {
+    compare_exactly("play-dark", &mut facing(Face::Play, "Church Bell", SIZE, 1.0, Theme::Dark).harness);
+    for theme in [Theme::Light, Theme::HighContrast] {
+        let name = format!("play-{}", theme.id());
+        compare_small(&name, 2, &mut facing(Face::Play, "Church Bell", SIZE, 1.0, theme).harness);
+    }
+    for (sound, theme, name) in [
+        ("Marimba", Theme::Dark, "play-marimba-least"),
+        ("Tam-Tam", Theme::Light, "play-gong-least"),
+        ("Acoustic Kit", Theme::HighContrast, "play-kit-least"),
+    ] {
+        let mut stage = facing(Face::Play, sound, LEAST_SIZE, 1.0, theme);
+        match theme {
+            Theme::Dark => compare(name, &mut stage.harness),
+            _ => compare_small(name, 2, &mut stage.harness),
+        }
+    }
+    let mut band = playing("Tam-Tam");
+    band.strike_at(48, 1.0);
+    band.passes(30);
+    compare_small("play-gong", 3, &mut band.stage.harness);
+    finish();
+}
+
+#[test]
+fn a_body_that_is_clicked_sounds() {
+    let mut band = playing("Church Bell");
+    let place = band.rect("Struck body").center();
+    band.press(place, true);
+    band.passes(2);
+    band.press(place, false);
+    band.passes(2);
+    assert_eq!(band.strikes(), 1);
+    // A sound without a body has no place to be struck at.
+    let mut band = playing("Crash");
+    let place = band.rect("Strike").center();
+    band.press(place, true);
+    band.passes(1);
+    band.press(place, false);
+    band.passes(2);
+    assert_eq!(band.strikes(), 1);
+}
+
+#[test]
+fn a_first_window_brings_a_sound_with_a_body_and_a_later_one_nothing() {
+    let (params, host) = (Arc::new(SprungParams::default()), Arc::new(FakeHost::default()));
+    let open = || Window::new(params.clone(), None).open(host.context());
+    open();
+    assert_eq!(params.name(), "Church Bell");
+    let State { seed, view, .. } = params.state();
+    params.load(State::new(Playable::find("Init").unwrap(), seed, view).into());
+    open();
+    assert_eq!(params.name(), "init");
+    let params = Arc::new(SprungParams::default());
+    params.knobs()[Param::Decay as usize].turn(0.1);
+    Window::new(params.clone(), None).open(host.context());
+    assert_eq!(params.name(), "Init");
+}
+
+#[test]
+fn another_body_and_another_material_are_heard_and_undone_one_by_one() {
+    let mut band = playing("Church Bell");
+    let [bell, _] = band.thing();
+    band.click(Role::RadioButton, "thing: Glass");
+    let [glass, material] = band.thing();
+    assert_eq!((glass, band.strikes()), ("glass", 1));
+    band.click(Role::RadioButton, "material: steel");
+    assert_eq!((band.thing(), band.strikes()), (["glass", "steel"], 1));
+    band.undo();
+    assert_eq!(band.thing(), ["glass", material]);
+    band.undo();
+    assert_eq!(band.thing()[0], bell);
+}
+
+#[test]
+fn an_exciter_acts_alone_and_its_lamp_adds_it() {
+    let mut band = playing("Marimba");
+    let silent = Param::BowLevel.info().min;
+    band.click(Role::Button, "Bow alone");
+    assert!(band.value(Param::BowLevel) > silent && band.value(Param::MalletLevel) == silent);
+    assert_eq!(band.strikes(), 1);
+    band.click(Role::CheckBox, "Mallet");
+    assert!(band.value(Param::BowLevel) > silent && band.value(Param::MalletLevel) > silent);
+    band.undo();
+    band.undo();
+    assert!(band.value(Param::BowLevel) == silent && band.value(Param::MalletLevel) > silent);
+}
+
+#[test]
+fn the_floor_is_the_space_and_the_tabs_lead_to_all_of_the_sound_and_back() {
+    let mut band = playing("Church Bell");
+    band.click(Role::Tab, "Spring");
+    assert_eq!(band.value(Param::Space), 2.0);
+    band.click(Role::Tab, "Sound");
+    assert!(band.stage.harness.query_by_label("Struck body").is_none());
+    band.stage.harness.get_by_role_and_label(Role::Tab, "Exciters");
+    band.click(Role::Tab, "Play");
+    band.rect("Struck body");
+    // Everything on the page can be reached by the keyboard.
+    for _ in 0..60 {
+        band.stage.harness.key_press_modifiers(Modifiers::NONE, Key::Tab);
+        band.passes(1);
+        if band.stage.harness.get_by_role_and_label(Role::RadioButton, "thing: Gong").is_focused() {
+            return;
+        }
+    }
+    panic!("the tiles cannot be reached by Tab");
+}
