@@ -149,6 +149,13 @@ impl Bank {
         either!(self, bank => bank.settle())
     }
 
+    /// See [`ModeBank::rest_below`]. Does nothing with the original formulas.
+    pub(super) fn rest_below(&mut self, least: f32) {
+        if let Self::Exact(bank) = self {
+            bank.rest_below(least);
+        }
+    }
+
     /// See [`ModeBank::add_energies`]. Modes of the original formulas do not exchange energy, so they are not counted.
     pub(super) fn add_energies(&self, bands: &[u8; MAX_MODES], sums: &mut [Band; BANDS]) {
         if let Self::Exact(bank) = self {

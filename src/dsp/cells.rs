@@ -239,6 +239,11 @@ impl Cells {
         self.iter_mut().map(|cell| cell.bank.settle()).sum()
     }
 
+    /// Like [`super::ModeBank::rest_below`], for each cell.
+    pub(crate) fn rest_below(&mut self, least: f32) {
+        self.iter_mut().for_each(|cell| cell.bank.rest_below(least));
+    }
+
     /// Frames until the sum of the squared amplitudes of all modes falls below `total`, if their damping does not
     /// change. Takes some microseconds.
     pub(crate) fn frames_until(&self, total: f64) -> u64 {

@@ -5,11 +5,13 @@ use super::riff;
 use super::wav_format::{SampleFormat, WavFormat};
 use crate::dsp::random;
 use crate::error::{Error, Result};
-use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::io::{Seek, SeekFrom, Write};
 
 /// Writes blocks of frames to a WAV file: RIFF up to 4 GiB, RF64 (EBU Tech 3306) for longer files.
 pub struct WavWriter<W: Write + Seek> {
-    out: BufWriter<W>,
+    out: W,
+    /// The bytes of a block.
+    bytes: Vec<u8>,
     name: String,
     format: WavFormat,
     /// One stream of random numbers per channel.
@@ -27,12 +29,20 @@ impl<W: Write + Seek> WavWriter<W> {
     ///
     /// # Errors
     /// [`Error::Io`] if the header cannot be written, [`Error::Value`] as [`WavFormat::file_len`].
-    pub fn new(out: W, name: &str, format: WavFormat, dither: Option<u64>, frames: Option<u64>) -> Result<Self> {
+    pub fn new(mut out: W, name: &str, format: WavFormat, dither: Option<u64>, frames: Option<u64>) -> Result<Self> {
         format.file_len(frames.unwrap_or(0))?;
-        let mut out = BufWriter::with_capacity(1 << 16, out);
         out.write_all(&riff::header(&format, frames.unwrap_or(0))).map_err(|source| Error::io(name, source))?;
         let dither = dither.map(|seed| [random::key(seed, 0), random::key(seed, 1)]);
-        Ok(Self { out, name: name.to_owned(), format, dither, frames: 0, expected: frames, clipped: 0 })
+        Ok(Self {
+            out,
+            bytes: Vec::new(),
+            name: name.to_owned(),
+            format,
+            dither,
+            frames: 0,
+            expected: frames,
+            clipped: 0,
+        })
     }
 
     /// Appends a block: one slice per channel (the second is ignored for a file with one channel); 1.0 is full scale.
@@ -44,19 +54,20 @@ impl<W: Write + Seek> WavWriter<W> {
         let bits = self.format.samples.bits();
         let channels = &[left, right][..self.format.channels.into()];
         let frames = channels.iter().map(|samples| samples.len()).min().unwrap_or(0);
+        self.bytes.clear();
         for index in 0..frames {
             let n = self.frames + index as u64;
             for (channel, samples) in channels.iter().enumerate() {
                 let sample = samples[index];
                 match self.format.samples {
-                    SampleFormat::Float32 => hound::Sample::write(sample, &mut self.out, bits),
-                    _ => hound::Sample::write(self.quantise(sample, channel, n), &mut self.out, bits),
+                    SampleFormat::Float32 => hound::Sample::write(sample, &mut self.bytes, bits),
+                    _ => hound::Sample::write(self.quantise(sample, channel, n), &mut self.bytes, bits),
                 }
                 .map_err(|error| wav_error(&self.name, error))?;
             }
         }
         self.frames += frames as u64;
-        Ok(())
+        self.out.write_all(&self.bytes).map_err(|source| Error::io(&self.name, source))
     }
 
     /// Number of samples so far that were clipped. Only integers are.

@@ -27,7 +27,7 @@ const MODES_PER_TICK: usize = 8;
 /// Otherwise they are stepped. The choice depends on the modes and on the calls, never on the CPU or on block sizes.
 #[derive(Clone, Debug)]
 pub struct ModeBank {
-    instructions: Instructions,
+    pub(super) instructions: Instructions,
     sample_rate: f64,
     pub(super) len: usize,
     /// Modes from this index on are at rest. A multiple of [`LANES`] or all modes, so that every CPU computes the same
@@ -443,6 +443,19 @@ impl ModeBank {
         }
         self.live = self.live.next_multiple_of(LANES).min(self.len);
         f64::from(total) * f64::from(UNIT) * f64::from(UNIT)
+    }
+
+    /// Sets the last modes to rest that have a smaller amplitude than `least`, up to the first that has not. Must be called at
+    /// control ticks only.
+    pub(crate) fn rest_below(&mut self, least: f32) {
+        debug_assert!(self.frames_since() == 0);
+        let State { x: Row(x), y: Row(y) } = &mut self.states[self.current];
+        while let Some(last) = self.live.checked_sub(1)
+            && x[last] * x[last] + y[last] * y[last] < least * least
+        {
+            (x[last], y[last], self.live) = (0.0, 0.0, last);
+        }
+        self.live = self.live.next_multiple_of(LANES).min(self.len);
     }
 }
 

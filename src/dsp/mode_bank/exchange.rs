@@ -1,7 +1,9 @@
 //! Exchange of energy between the modes of a bank at a control tick, by bands.
 
+use super::rows::{Row, State, Wide};
 use super::{MAX_MODES, ModeBank};
-use crate::dsp::simd::vector::LANES;
+use crate::dsp::simd::Kernel;
+use crate::dsp::simd::vector::{LANES, Vector};
 use libm::sqrt;
 
 /// Maximum number of bands.
@@ -76,22 +78,44 @@ impl ModeBank {
         sign: impl Fn(usize) -> f32,
     ) {
         debug_assert!(self.frames_since() == 0);
-        let state = &mut self.states[self.current];
+        let (mut kept, mut received) = ([1.0; MAX_MODES], [0.0; MAX_MODES]);
         for (m, band) in bands[..self.len].iter().enumerate() {
-            let Exchange { kept, received } = exchange[usize::from(*band) % BANDS];
-            if kept == 1.0 && received == 0.0 {
-                continue;
-            }
-            let (x, y) = (&mut state.x.0[m], &mut state.y.0[m]);
-            let energy = f64::from(*x) * f64::from(*x) + f64::from(*y) * f64::from(*y);
-            if energy > 0.0 {
-                let factor = sqrt(kept + received / energy) as f32 * ROUNDED_DOWN;
-                (*x, *y) = (*x * factor, *y * factor);
-            } else if received > LEAST_RECEIVED {
-                *y = (sqrt(received) as f32 * ROUNDED_DOWN).copysign(sign(m));
-                // Modes from `live` on are at rest, with coefficients at the end of the ramp: they can start at once.
+            let Exchange { kept: its_kept, received: its_received } = exchange[usize::from(*band) % BANDS];
+            (kept[m], received[m]) = (its_kept, its_received);
+        }
+        let state = &mut self.states[self.current];
+        for m in 0..self.len {
+            if received[m] > LEAST_RECEIVED && state.x.0[m] == 0.0 && state.y.0[m] == 0.0 {
+                state.y.0[m] = (sqrt(received[m]) as f32 * ROUNDED_DOWN).copysign(sign(m));
+                // That is all of its change. Modes from `live` on are at rest, with coefficients at the end of the ramp: they
+                // can start at once.
+                (kept[m], received[m]) = (1.0, 0.0);
                 self.live = self.live.max((m + 1).next_multiple_of(LANES).min(self.len));
             }
+        }
+        self.instructions.run(Scale { state, kept: &kept, received: &received });
+    }
+}
+
+/// Scales the states of all modes by the square root of the change of their energies.
+struct Scale<'a> {
+    state: &'a mut State,
+    kept: &'a Wide,
+    received: &'a Wide,
+}
+
+impl Kernel for Scale<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, _: V::Proof) {
+        let Self { state: State { x: Row(x), y: Row(y) }, kept, received } = self;
+        for m in 0..MAX_MODES {
+            let (wide_x, wide_y) = (f64::from(x[m]), f64::from(y[m]));
+            let energy = wide_x * wide_x + wide_y * wide_y;
+            let factor = (kept[m] + received[m] / energy).sqrt() as f32 * ROUNDED_DOWN;
+            let factor = if energy > 0.0 && (kept[m] < 1.0 || received[m] > 0.0) { factor } else { 1.0 };
+            (x[m], y[m]) = (x[m] * factor, y[m] * factor);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Overdrive: soft clipping, without the aliasing of its overtones.
 
-use super::half_band::HalfBand;
+use super::half_band::{Both, HalfBand};
 use super::smoothed::{Smoothed, held};
 use libm::{exp, sqrt};
 use std::f64::consts::LN_10;
@@ -30,28 +30,29 @@ pub struct Overdrive {
     hardness: Smoothed,
     /// Share of the driven signal in the output, 0–1.
     blend: Smoothed,
-    sides: [Side; 2],
+    clipper: Clipper,
     /// Frames of silence at the input.
     silent_frames: u64,
     forget_frames: u64,
 }
 
 /// The filter next to the sample rate, which has to separate 23 from 25 kHz at 48 kHz, and the one at the higher rate.
-type Near = HalfBand<5, 5>;
-type Far = HalfBand<2, 2>;
+type Near = HalfBand<5>;
+type Far = HalfBand<2>;
 
+/// What clips both sides at four times the sample rate.
 #[derive(Clone, Debug)]
-struct Side {
+struct Clipper {
     up: (Near, Far),
     down: (Near, Far),
-    /// The last sample at the highest rate and its `√(1+k²x²)`.
-    last: [f32; 2],
+    /// The last samples at the highest rate and their `√(1+k²x²)`.
+    last: [Both; 2],
 }
 
-impl Side {
+impl Clipper {
     fn new() -> Self {
         let filters = (Near::new(0.02), Far::new(0.25));
-        Self { up: filters, down: filters, last: [0.0, 1.0] }
+        Self { up: filters, down: filters, last: [[0.0; 2], [1.0; 2]] }
     }
 
     fn clear(&mut self) {
@@ -59,22 +60,27 @@ impl Side {
             near.clear();
             far.clear();
         }
-        self.last = [0.0, 1.0];
+        self.last = [[0.0; 2], [1.0; 2]];
     }
 
-    fn next(&mut self, sample: f32, hardness: f32) -> f32 {
+    #[inline(always)]
+    fn next(&mut self, samples: Both, hardness: f32) -> Both {
         let square = hardness * hardness;
         let lift = (1.0 + square).sqrt();
         let Self { up, down, last } = self;
-        let mut shape = |sample: f32| {
-            let root = (1.0 + square * sample * sample).sqrt();
-            let mean = lift * (last[0] + sample) / (last[1] + root);
-            *last = [sample, root];
-            mean
-        };
-        let doubled = up.0.up(sample).map(|sample| {
-            let shaped = up.1.up(sample).map(&mut shape);
-            down.1.down(shaped)
+        let doubled = up.0.up(samples).map(|samples| {
+            // Two samples of both sides, as four lanes.
+            let [[a, b], [c, d]] = up.1.up(samples);
+            let (now, mut root, mut mean) = ([a, b, c, d], [0.0; 4], [0.0; 4]);
+            for lane in 0..4 {
+                root[lane] = (1.0 + square * now[lane] * now[lane]).sqrt();
+            }
+            let (before, before_root) = ([last[0][0], last[0][1], a, b], [last[1][0], last[1][1], root[0], root[1]]);
+            for lane in 0..4 {
+                mean[lane] = lift * (before[lane] + now[lane]) / (before_root[lane] + root[lane]);
+            }
+            *last = [[c, d], [root[2], root[3]]];
+            down.1.down([[mean[0], mean[1]], [mean[2], mean[3]]])
         });
         down.0.down(doubled)
     }
@@ -93,7 +99,7 @@ impl Overdrive {
             decibels: 0.0,
             hardness: Smoothed::new(0.0, sample_rate),
             blend: Smoothed::new(0.0, sample_rate),
-            sides: [Side::new(), Side::new()],
+            clipper: Clipper::new(),
             silent_frames: 0,
             forget_frames: (FORGET * sample_rate) as u64,
         }
@@ -119,7 +125,7 @@ impl Overdrive {
     }
 
     fn forget(&mut self) {
-        self.sides.iter_mut().for_each(Side::clear);
+        self.clipper.clear();
         self.silent_frames = self.forget_frames;
     }
 
@@ -173,9 +179,9 @@ impl Overdrive {
             } else {
                 self.silent_frames = 0;
             }
-            for (side, sample) in self.sides.iter_mut().zip([left, right]) {
-                let driven = side.next(held(*sample), hardness);
-                let heard = held(*sample);
+            let heard = [held(*left), held(*right)];
+            let driven = self.clipper.next(heard, hardness);
+            for ((sample, heard), driven) in [left, right].into_iter().zip(heard).zip(driven) {
                 *sample = if blend == 1.0 { driven } else { heard + (driven - heard) * blend };
             }
             if self.silent_frames == self.forget_frames || self.blend.rests_at(0.0) {

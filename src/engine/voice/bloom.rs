@@ -38,11 +38,8 @@ impl Bloom {
         controls.bloom > 0.0 && energy > 0.99 * Climb::LEAST_ENERGY
     }
 
-    /// Moves energy to higher modes for one control tick, if the sound blooms. `full` is the energy of a full strike.
+    /// Moves energy to higher modes for one control tick. `full` is the energy of a full strike.
     pub(super) fn climb(&mut self, controls: &Controls, full: f64, sample_rate: f64, bank: &mut Cells) {
-        if controls.bloom == 0.0 {
-            return;
-        }
         if !self.is_sorted {
             self.is_sorted = true;
             bank.sort_into_bands();

@@ -158,9 +158,7 @@ impl SynthVoice {
         if self.decay.control(&self.controls, modes, &mut self.bank) {
             self.energy.forget_end();
         }
-        if self.may_move || self.controls.tension > 0.0 || self.controls.bloom > 0.0 {
-            self.energy.measure_always();
-        }
+        self.energy.measure_always(self.may_move || self.controls.tension > 0.0 || self.blooms());
         let energy = || self.energy.now() / self.strike.full_energy();
         let tension = self.tension.control(&self.controls, energy, self.fresh, self.sample_rate, frames);
         let bends = Bends { wheels, tuning: self.expressions.tuning.into(), tension };
@@ -248,8 +246,17 @@ impl SynthVoice {
         if self.fresh {
             return;
         }
-        self.energy.settle(&mut self.bank, &self.strike, &self.fader);
-        self.bloom.climb(&self.controls, self.strike.full_energy(), self.sample_rate, &mut self.bank);
+        let blooms = self.blooms();
+        let rings = !blooms && !self.strike.is_active() && !self.is_driven();
+        self.energy.settle(&mut self.bank, &self.strike, &self.fader, rings);
+        if blooms {
+            self.bloom.climb(&self.controls, self.strike.full_energy(), self.sample_rate, &mut self.bank);
+        }
+    }
+
+    /// Whether energy moves to higher modes.
+    fn blooms(&self) -> bool {
+        Bloom::acts(&self.controls, self.energy.now() / self.strike.full_energy())
     }
 
     /// Frames until the voice is over if no event comes, `to_tick` frames before the next control tick: see
@@ -264,8 +271,7 @@ impl SynthVoice {
         } else if self.modulators.move_the_end() || self.is_driven() {
             u64::MAX
         } else {
-            let blooms = Bloom::acts(&self.controls, self.energy.now() / self.strike.full_energy());
-            let times = [self.clock.total, to_tick];
+            let (blooms, times) = (self.blooms(), [self.clock.total, to_tick]);
             self.energy.tail_frames(&self.bank, &self.strike, &self.fader, blooms, times)
         }
     }

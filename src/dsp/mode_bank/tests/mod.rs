@@ -101,6 +101,26 @@ fn error_db(rendered: &[f32], masses: &mut [HarmonicOscillator<f64>]) -> f64 {
     10.0 * libm::log10(squares / rendered.len() as f64) - 20.0 * libm::log10(masses.len() as f64)
 }
 
+/// Modes that are put to rest below an amplitude change no sample by more than this amplitude for each of them, and are not
+/// computed any more.
+#[test]
+fn modes_at_rest_below_an_amplitude_change_no_sample_by_more() {
+    const LEAST: f32 = 1e-4;
+    let modes: Vec<_> = (0..64).map(|m| (100.0 + 150.0 * f64::from(m), 3.0 / f64::from(m + 1))).collect();
+    let [mut whole, mut part] = [bank(&modes), bank(&modes)];
+    let (mut difference, mut live) = (0.0_f32, vec![]);
+    for tick in 0..1500 {
+        let drive = (tick == 0).then(strike);
+        let sounds = [&mut whole, &mut part].map(|bank| run(bank, CONTROL_FRAMES, drive.as_ref()));
+        let differences = sounds[0].iter().zip(&sounds[1]).map(|(whole, part)| (whole - part).abs());
+        difference = differences.fold(difference, f32::max);
+        part.rest_below(LEAST);
+        live.push(part.live);
+    }
+    assert!(difference > 0.0 && difference < 64.0 * LEAST, "{difference}");
+    assert!(live[0] == 64 && live[1499] == LANES && whole.live == 64, "{} modes are left", live[1499]);
+}
+
 /// However the bank renders, and although the mode is at rest behind all that are live, a nudge is a push of this mode alone.
 #[test]
 fn a_nudge_is_a_push_of_one_mode() {

@@ -2,12 +2,14 @@
 
 mod measured;
 mod peers;
+mod songs;
 mod tables;
 
 use crate::shell::{cargo, root};
 use measured::Measured;
 use peers::Peer;
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 const DOCUMENT: &str = "benches/README.md";
@@ -20,7 +22,7 @@ const FLAGS: &str = "-C target-cpu=x86-64-v3";
 /// Runs everything and writes the tables. With `again`, runs nothing and uses the results of the last run.
 pub(crate) fn run(again: bool) -> Result<(), String> {
     let criterion = root().join("target/criterion-table");
-    let peers_table = root().join("target/peers/peers.tsv");
+    let [peers_table, songs_table] = ["target/peers/peers.tsv", "target/peers/songs.tsv"].map(|path| root().join(path));
     if !again {
         // Old results may be of benches that no longer exist.
         let _ = fs::remove_dir_all(&criterion);
@@ -37,14 +39,14 @@ pub(crate) fn run(again: bool) -> Result<(), String> {
             beside.env("RUSTFLAGS", FLAGS);
         }
         succeed(beside)?;
-        let script = root().join("benches/peers/run.sh");
-        let output = Command::new(&script).stderr(std::process::Stdio::inherit()).output();
-        let output = output.map_err(|error| format!("{}: {error}", script.display()))?;
-        fs::write(&peers_table, output.stdout).map_err(|error| format!("{}: {error}", peers_table.display()))?;
+        run_script("benches/peers/run.sh", &peers_table)?;
+        succeed(cargo("build --release --package sprung-cli"))?;
+        run_script("benches/songs.sh", &songs_table)?;
     }
     let measured = Measured::read(&criterion)?;
-    let peers = fs::read_to_string(&peers_table).map_err(|error| format!("{}: {error}", peers_table.display()))?;
-    let tables = tables::all(&measured, &Peer::parse(&peers)?, &cpu());
+    let read = |path: &Path| fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()));
+    let (peers, songs) = (Peer::parse(&read(&peers_table)?)?, songs::parse(&read(&songs_table)?)?);
+    let tables = tables::all(&measured, &peers, &songs, &cpu());
 
     let path = root().join(DOCUMENT);
     let document = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
@@ -52,6 +54,14 @@ pub(crate) fn run(again: bool) -> Result<(), String> {
     fs::write(&path, document).map_err(|error| format!("{}: {error}", path.display()))?;
     println!("{tables}\nwritten to {DOCUMENT}");
     Ok(())
+}
+
+/// Runs a script, and writes what it prints to a file.
+fn run_script(script: &str, to: &Path) -> Result<(), String> {
+    let script = root().join(script);
+    let output = Command::new(&script).stderr(std::process::Stdio::inherit()).output();
+    let output = output.map_err(|error| format!("{}: {error}", script.display()))?;
+    fs::write(to, output.stdout).map_err(|error| format!("{}: {error}", to.display()))
 }
 
 fn succeed(mut command: Command) -> Result<(), String> {

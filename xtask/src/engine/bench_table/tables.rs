@@ -2,6 +2,7 @@
 
 use super::measured::Measured;
 use super::peers::Peer;
+use super::songs::Song;
 use sprung::dsp::Level;
 use std::fmt::Write as _;
 
@@ -14,11 +15,12 @@ const BLOCK: f64 = 64.0 / RATE;
 type Unit = fn(f64) -> f64;
 
 /// All tables.
-pub(super) fn all(measured: &Measured, peers: &[Peer], cpu: &str) -> String {
+pub(super) fn all(measured: &Measured, peers: &[Peer], songs: &[Song], cpu: &str) -> String {
     let levels: Vec<Level> = Level::ALL.into_iter().rev().filter(|level| level.is_available()).collect();
     let mut text = machine(measured, cpu);
     text += &banks(measured, &levels);
     text += &instrument(measured, &levels);
+    text += &whole_songs(songs);
     text += &beside(measured, peers, levels[0]);
     text += &sizes(measured, &levels);
     text
@@ -119,6 +121,26 @@ fn instrument(measured: &Measured, levels: &[Level]) -> String {
         silent("ensemble"),
         song(1),
         song(2),
+    );
+    text
+}
+
+fn whole_songs(songs: &[Song]) -> String {
+    let mut text =
+        "### Whole songs on one thread: user seconds, with what each program reads and writes\n\n".to_owned();
+    text += &head("song", ["Sprung", "FluidSynth", "times FluidSynth's"].into_iter().map(str::to_owned));
+    let mut ratios: Vec<f64> = songs.iter().map(Song::ratio).collect();
+    for (song, ratio) in songs.iter().zip(&ratios) {
+        let [sprung, fluidsynth, ratio] = [song.sprung, song.fluidsynth, *ratio].map(|value| figure(Some(value)));
+        let _ = writeln!(text, "| {} | {sprung} | {fluidsynth} | {ratio} |", song.name);
+    }
+    ratios.sort_by(f64::total_cmp);
+    let median = ratios.get(ratios.len() / 2).copied();
+    let _ = writeln!(
+        text,
+        "\nThe median is {} times; the dearest song {} times.\n",
+        figure(median),
+        figure(ratios.last().copied())
     );
     text
 }
