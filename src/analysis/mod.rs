@@ -5,7 +5,6 @@
 
 pub mod alignment;
 pub mod comparison;
-pub mod damped_sine;
 pub mod diff;
 #[cfg(feature = "analysis")]
 pub mod digest;

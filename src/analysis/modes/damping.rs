@@ -205,10 +205,10 @@ fn differs(fit: &Fit, samples: &[f64], range: Range<usize>, most_left: f64) -> b
 
 #[cfg(test)]
 mod tests {
-    use super::super::pole::LN_60_DB;
     use super::super::tests::driven;
     use super::super::{Settings, modes};
     use crate::dsp::random::{key, unit};
+    use crate::sound::bodies::LN_1000;
     use crate::units::gain_from_db;
     use libm::{exp, sin};
     use std::f64::consts::TAU;
@@ -225,7 +225,7 @@ mod tests {
                 let frequency = 300.0 * (1.0 + (k / 2) as f64 * 0.83) + 0.9 * (k % 2) as f64;
                 let t60 = 8.0 - 0.5 * k as f64;
                 let fall = t.min(LET_GO) / t60 + (t - LET_GO).max(0.0) / damper.min(t60);
-                0.1 * exp(-LN_60_DB * fall) * sin(TAU * frequency * t + k as f64)
+                0.1 * exp(-LN_1000 * fall) * sin(TAU * frequency * t + k as f64)
             };
             (0..8).map(mode).sum::<f64>() as f32
         };
@@ -266,7 +266,7 @@ mod tests {
     #[test]
     #[ignore = "takes half a minute"]
     fn the_end_of_what_modes_do_not_explain_is_no_damper() {
-        let mode = (TAU * 300.0 / RATE, exp(-LN_60_DB / (0.3 * RATE)));
+        let mode = (TAU * 300.0 / RATE, exp(-LN_1000 / (0.3 * RATE)));
         let sound = driven(&[mode], (0.15 * RATE) as usize, RATE as usize);
         assert_eq!(found(sound.into_iter().map(|sample| 0.01 * sample as f32).collect()), None);
     }
