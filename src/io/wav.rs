@@ -26,7 +26,7 @@ impl<W: Write + Seek> WavWriter<W> {
     /// 1992). Floats are not rounded and get no noise.
     ///
     /// # Errors
-    /// [`Error::Io`] if the header cannot be written, [`Error::Value`] as [`WavFormat::file_len`].
+    /// [`Error::Io`] if the header cannot be written, [`Error::Value`] as `WavFormat::file_len`.
     pub fn new(out: W, name: &str, format: WavFormat, dither: Option<u64>, frames: Option<u64>) -> Result<Self> {
         format.file_len(frames.unwrap_or(0))?;
         let mut out = BufWriter::with_capacity(1 << 16, out);
@@ -60,7 +60,7 @@ impl<W: Write + Seek> WavWriter<W> {
     }
 
     /// Number of samples so far that were clipped. Only integers are.
-    pub fn clipped(&self) -> u64 {
+    pub(crate) fn clipped(&self) -> u64 {
         self.clipped
     }
 
