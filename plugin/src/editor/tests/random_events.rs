@@ -5,7 +5,6 @@ use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::state::State;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, pos2, vec2};
-use sprung::dsp::random::Sequence;
 use std::sync::Arc;
 
 /// Number of events for each of the four windows.
@@ -25,6 +24,16 @@ const KEYS: [Key; 9] = [
 ];
 const TEXTS: [&str; 5] = ["1", "250 ms", "bell", "ä", "-"];
 
+/// Pseudorandom numbers below a limit, the same in each run (Numerical Recipes, 7.1).
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, limit: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) as usize) % limit
+    }
+}
+
 /// One of the files that a user may drop.
 fn file(number: usize) -> Arc<Dropped> {
     let files = ["scales/19-equal.scl", "scales/19-equal-on-white-keys.kbm", "kits/hand-kit.toml", "scales/none.scl"];
@@ -32,7 +41,7 @@ fn file(number: usize) -> Arc<Dropped> {
 }
 
 /// A random event at the present place, or a movement to another place.
-fn event(numbers: &mut Sequence, place: &mut Pos2, size: [u32; 2]) -> Event {
+fn event(numbers: &mut Numbers, place: &mut Pos2, size: [u32; 2]) -> Event {
     let modifiers = match numbers.below(8) {
         0 => Modifiers::SHIFT,
         1 => Modifiers::ALT,
@@ -67,7 +76,7 @@ fn event(numbers: &mut Sequence, place: &mut Pos2, size: [u32; 2]) -> Event {
 
 fn storm(seed: u64, sound: &str, size: [u32; 2], theme: Theme) {
     let mut band = Band::new(sound, size, theme);
-    let mut numbers = Sequence::new(seed);
+    let mut numbers = Numbers(seed);
     let mut place = pos2(0.0, 0.0);
     let mut left = EVENTS;
     while left > 0 {

@@ -1,8 +1,7 @@
 //! Random variations of a sound: from parts of factory sounds, or by small changes. Locked sections stay as they are.
 
 use egui::Ui;
-use sprung::dsp::random::{Sequence, key};
-use sprung::engine::{Event, Synth};
+use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::{PARAMS, Param, ParamInfo, Unit};
 use sprung::patch::Patch;
 use sprung::preset::Preset;
@@ -25,6 +24,17 @@ pub(super) enum Variation {
     Mutate,
 }
 
+/// Pseudorandom numbers, the same for each seed (Numerical Recipes, 7.1).
+struct Numbers(u64);
+
+impl Numbers {
+    /// From 0 to below 1.
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as f64 / (1_u64 << 31) as f64
+    }
+}
+
 /// The sections that can be varied.
 pub(super) fn sections() -> impl Iterator<Item = &'static [ParamInfo]> {
     PARAMS.chunk_by(|a, b| a.section == b.section).filter(|rows| !FIXED.contains(&rows[0].section))
@@ -44,12 +54,14 @@ impl Variation {
         let home = preset.guide.home;
         let before = level(&preset.patch, home);
         (0..TRIES).find_map(|number| {
-            let mut random = Sequence::new(key(seed, number));
+            let mut numbers =
+                Numbers(seed.wrapping_mul(TRIES).wrapping_add(number).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+            numbers.next();
             let mut varied = preset.clone();
             for section in sections().filter(|section| !locked.contains(section[0].section)) {
                 match self {
-                    Self::Randomise => take(section, &mut varied.patch, &mut random),
-                    Self::Mutate => mutate(section, &mut varied.patch, &mut random),
+                    Self::Randomise => take(section, &mut varied.patch, &mut numbers),
+                    Self::Mutate => mutate(section, &mut varied.patch, &mut numbers),
                 }
             }
             let after = level(&varied.patch, home);
@@ -67,9 +79,9 @@ impl Variation {
 }
 
 /// Copies a section from a random factory sound; the body's section comes with the modes.
-fn take(section: &[ParamInfo], patch: &mut Patch, random: &mut Sequence) {
+fn take(section: &[ParamInfo], patch: &mut Patch, numbers: &mut Numbers) {
     let all = Preset::factory();
-    let source = &all[random.below(all.len())].patch;
+    let source = &all[((numbers.next() * all.len() as f64) as usize).min(all.len() - 1)].patch;
     for info in section {
         patch.set(info.param, source.get(info.param));
     }
@@ -80,9 +92,9 @@ fn take(section: &[ParamInfo], patch: &mut Patch, random: &mut Sequence) {
 
 /// Moves about a third of a section's continuous parameters by up to a tenth of their travel. A parameter at its lowest
 /// value, such as the level of an exciter that is off, stays there.
-fn mutate(section: &[ParamInfo], patch: &mut Patch, random: &mut Sequence) {
+fn mutate(section: &[ParamInfo], patch: &mut Patch, numbers: &mut Numbers) {
     for info in section {
-        let (chance, by) = (random.unit(), random.unit() - random.unit());
+        let (chance, by) = (numbers.next(), numbers.next() - numbers.next());
         let value = patch.get(info.param);
         let is_quantity = !matches!(info.unit, Unit::Count | Unit::Choice) && info.is_modulatable();
         if is_quantity && chance < 1.0 / 3.0 && value > info.min {
@@ -92,12 +104,13 @@ fn mutate(section: &[ParamInfo], patch: &mut Patch, random: &mut Sequence) {
 }
 
 /// The mean level of the first half second of a struck note, in decibels.
-fn level(patch: &Patch, home: u8) -> f64 {
+fn level(patch: &Patch, key: u8) -> f64 {
     const FRAMES: usize = 12_000;
     let mut synth = Synth::new(2.0 * FRAMES as f64, 0);
     synth.set_patch(patch);
+    let on = EventKind::NoteOn { key, detune: 0.0, velocity: 0.8, id: None };
     let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
-    synth.process(&[Event::note_on(0, home, 0.8)], &mut left, &mut right);
+    synth.process(&[Event { frame: 0, channel: 0, kind: on }], &mut left, &mut right);
     let energy: f64 = left.iter().chain(&right).map(|sample| f64::from(*sample) * f64::from(*sample)).sum();
     db_from_gain((energy / (2 * FRAMES) as f64).max(1e-20)) / 2.0
 }
