@@ -30,7 +30,7 @@ impl Alignment {
 
 /// Finds the shift, of at most some seconds, and the gain by the largest cross-correlation, summed over the channels
 /// that both sounds have. `None` if one of them is silent or not finite.
-pub fn align(first: &[Vec<f32>], second: &[Vec<f32>]) -> Option<Alignment> {
+pub(crate) fn align(first: &[Vec<f32>], second: &[Vec<f32>]) -> Option<Alignment> {
     let loudest = |sound: &[Vec<f32>]| sound.iter().flatten().fold(0.0_f32, |most, sample| most.max(sample.abs()));
     let finite = |sound: &[Vec<f32>]| sound.iter().flatten().all(|sample| sample.is_finite());
     let peak = loudest(first);

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use toml::{Table, Value};
 
 /// Frames that share one short hash.
-pub const CHUNK: usize = 4096;
+pub(crate) const CHUNK: usize = 4096;
 
 /// The digest of a stereo render.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,9 +27,9 @@ pub struct Digest {
     pub rms_db: [f64; 2],
     /// Mean of each channel.
     pub dc: [f64; 2],
-    /// Levels of [`BAND_CENTRES`] in dBFS, mean power of both channels.
+    /// Levels of the octaves from 62.5 Hz to 8 kHz in dBFS, mean power of both channels.
     pub bands_db: [f64; 8],
-    /// The first eight digits of the SHA-256 of each [`CHUNK`] of frames.
+    /// The first eight digits of the SHA-256 of each 4,096 frames.
     pub chunks: Vec<String>,
 }
 
@@ -173,7 +173,7 @@ impl Digest {
 }
 
 /// Bytes in hexadecimal digits.
-pub fn hexadecimal(bytes: &[u8]) -> String {
+pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 

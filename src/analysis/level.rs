@@ -4,7 +4,7 @@ use crate::units::db_from_gain;
 use libm::sqrt;
 
 /// The level of silence, where a level in decibels must be a finite number.
-pub const SILENCE_DB: f64 = -300.0;
+pub(crate) const SILENCE_DB: f64 = -300.0;
 
 /// Largest magnitude; NaN if a sample is NaN.
 pub fn peak(samples: &[f32]) -> f64 {
@@ -12,18 +12,18 @@ pub fn peak(samples: &[f32]) -> f64 {
 }
 
 /// Root of the mean square; 0 for no samples.
-pub fn rms<S: Copy + Into<f64>>(samples: &[S]) -> f64 {
+pub(crate) fn rms<S: Copy + Into<f64>>(samples: &[S]) -> f64 {
     sqrt(energy(samples, 0.0) / samples.len().max(1) as f64)
 }
 
 /// The mean of some channels. It is as long as the shortest of them.
-pub fn mean_of<C: AsRef<[f32]>>(channels: &[C]) -> Vec<f64> {
+pub(crate) fn mean_of<C: AsRef<[f32]>>(channels: &[C]) -> Vec<f64> {
     let len = channels.iter().map(|channel| channel.as_ref().len()).min().unwrap_or(0);
     let count = channels.len() as f64;
     (0..len).map(|n| channels.iter().map(|channel| f64::from(channel.as_ref()[n])).sum::<f64>() / count).collect()
 }
 
-/// [`mean_of`] in single precision.
+/// The mean of some channels, as long as the shortest.
 pub fn mono<C: AsRef<[f32]>>(channels: &[C]) -> Vec<f32> {
     mean_of(channels).into_iter().map(|sample| sample as f32).collect()
 }
@@ -44,13 +44,13 @@ pub(crate) fn cancelling(channels: &[Vec<f32>]) -> Option<usize> {
 }
 
 /// Sum of the squares of samples about a constant.
-pub fn energy<S: Copy + Into<f64>>(samples: &[S], constant: f64) -> f64 {
+pub(crate) fn energy<S: Copy + Into<f64>>(samples: &[S], constant: f64) -> f64 {
     let distance = |sample: &S| (*sample).into() - constant;
     samples.iter().map(|sample| distance(sample) * distance(sample)).sum()
 }
 
 /// Mean; 0 for no samples.
-pub fn dc(samples: &[f32]) -> f64 {
+pub(crate) fn dc(samples: &[f32]) -> f64 {
     samples.iter().map(|sample| f64::from(*sample)).sum::<f64>() / samples.len().max(1) as f64
 }
 
@@ -66,7 +66,7 @@ const ERROR_OF_MEDIAN: f64 = 1.2533;
 /// The constant that is added to a strike: the median of the means of blocks of some samples; 0 if the blocks, where there are
 /// four or more, do not agree on it, and for no samples. The mean of all samples is not it, since a strike can be asymmetric: taken
 /// away, it would leave a constant in the quiet end.
-pub fn offset<S: Copy + Into<f64>>(samples: &[S], block: usize) -> f64 {
+pub(crate) fn offset<S: Copy + Into<f64>>(samples: &[S], block: usize) -> f64 {
     let median = |mut numbers: Vec<f64>| {
         numbers.sort_by(f64::total_cmp);
         numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
@@ -80,7 +80,7 @@ pub fn offset<S: Copy + Into<f64>>(samples: &[S], block: usize) -> f64 {
     if count < FEWEST_BLOCKS || libm::fabs(middle) > SIGNIFICANT * error { middle } else { 0.0 }
 }
 
-/// An amplitude in dB relative to full scale (1.0), never below [`SILENCE_DB`].
+/// An amplitude in dB relative to full scale (1.0), never below `SILENCE_DB`.
 pub fn dbfs(amplitude: f64) -> f64 {
     if amplitude.is_nan() { f64::NAN } else { db_from_gain(amplitude).max(SILENCE_DB) }
 }

@@ -11,7 +11,7 @@ pub const RATE: u32 = 44_100;
 /// Number of bands.
 pub(crate) const BANDS: usize = 48;
 /// Samples per window.
-pub const WINDOW: usize = 2048;
+pub(crate) const WINDOW: usize = 2048;
 /// Samples from one window to the next.
 pub(crate) const HOP: usize = 256;
 /// Range in dB below the loudest band in which differences count.
@@ -54,12 +54,12 @@ static EDGES: LazyLock<[f64; BANDS + 2]> =
     LazyLock::new(|| std::array::from_fn(|edge| hertz(mel(HIGHEST) * edge as f64 / (BANDS + 1) as f64)));
 
 /// The frequency in Hz at which a band weighs most.
-pub fn centre(band: usize) -> f64 {
+pub(crate) fn centre(band: usize) -> f64 {
     EDGES[band + 1]
 }
 
 /// The weights of a frequency in Hz in the bands: at most two are not 0.
-pub fn weights(frequency: f64) -> [f64; BANDS] {
+pub(crate) fn weights(frequency: f64) -> [f64; BANDS] {
     std::array::from_fn(|band| {
         let [low, middle, high] = [EDGES[band], EDGES[band + 1], EDGES[band + 2]];
         let rise = (frequency - low) / (middle - low);
@@ -159,7 +159,7 @@ pub(super) fn onset(samples: &[f32]) -> usize {
 }
 
 /// The samples from the onset on, which is the first sample above 1 % of the peak.
-pub fn from_onset(samples: &[f32]) -> &[f32] {
+pub(crate) fn from_onset(samples: &[f32]) -> &[f32] {
     &samples[onset(samples)..]
 }
 

@@ -5,7 +5,6 @@
 
 pub mod alignment;
 pub mod comparison;
-pub mod damped_sine;
 pub mod diff;
 #[cfg(feature = "analysis")]
 pub mod digest;
@@ -13,6 +12,7 @@ pub mod digest;
 pub mod figure;
 pub mod fit;
 pub mod level;
+mod line;
 pub mod log_mel;
 #[cfg(feature = "analysis")]
 pub mod measures;

@@ -6,14 +6,14 @@ use realfft::{RealFftPlanner, RealToComplex, num_complex::Complex};
 use std::{f64::consts::PI, sync::Arc};
 
 /// Centres in Hz of the octaves that [`band_levels`] measures.
-pub const BAND_CENTRES: [f64; 8] = [62.5, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0];
+pub(crate) const BAND_CENTRES: [f64; 8] = [62.5, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0];
 
 /// Magnitudes of the bins from 0 Hz to Nyquist, in dB: a full-scale sine shows 0 dB.
 #[derive(Clone, Debug)]
 pub struct Spectrum {
     /// Hz from one bin to the next.
     pub bin_width: f64,
-    /// One level per bin, never below [`SILENCE_DB`].
+    /// One level per bin, never below `SILENCE_DB`.
     pub levels: Vec<f64>,
 }
 
@@ -28,7 +28,7 @@ pub struct Peak {
 
 /// Spectra of overlapping stretches.
 #[derive(Clone, Debug)]
-pub struct Spectrogram {
+pub(crate) struct Spectrogram {
     /// Hz from one bin to the next.
     pub bin_width: f64,
     /// Seconds from one column to the next.
@@ -77,7 +77,7 @@ pub fn spectrum(samples: &[f32], sample_rate: f64) -> Spectrum {
 }
 
 /// Spectra of windows of `length` samples (raised to an even number of at least 16), `hop` samples apart.
-pub fn spectrogram(samples: &[f32], sample_rate: f64, length: usize, hop: usize) -> Spectrogram {
+pub(crate) fn spectrogram(samples: &[f32], sample_rate: f64, length: usize, hop: usize) -> Spectrogram {
     let (length, hop) = (length.max(16).next_multiple_of(2), hop.max(1));
     let mut transform = Transform::new(blackman_harris(length), length);
     let columns = (0..samples.len().max(1))
@@ -109,7 +109,7 @@ pub fn peaks(spectrum: &Spectrum, floor: f64) -> Vec<Peak> {
 
 /// RMS level in dBFS of each octave of [`BAND_CENTRES`] (from centre/√2 to centre·√2) over all of `samples`; octaves
 /// above Nyquist have [`SILENCE_DB`].
-pub fn band_levels(samples: &[f32], sample_rate: f64) -> [f64; 8] {
+pub(crate) fn band_levels(samples: &[f32], sample_rate: f64) -> [f64; 8] {
     // At most 6 Hz per bin, so that the lowest octave has at least seven bins.
     let length = ((sample_rate / 6.0) as usize).clamp(64, 1 << 20).next_power_of_two();
     // Hann windows a quarter of a length apart, the first of which ends a quarter of a length into the samples: the

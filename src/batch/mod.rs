@@ -34,7 +34,7 @@ pub enum FileFormat {
 
 impl FileFormat {
     /// The extension of file names.
-    pub fn ending(self) -> &'static str {
+    pub(crate) fn ending(self) -> &'static str {
         match self {
             Self::Wav => "wav",
             Self::Flac => "flac",
@@ -50,9 +50,6 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// The whole batch.
-    pub const WHOLE: Self = Self { index: 0, count: 1 };
-
     /// The `number`-th part, from 1, of `count` parts. It has the jobs whose numbers, from 0, leave `number` − 1 when
     /// divided by `count`.
     ///

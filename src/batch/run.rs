@@ -236,7 +236,7 @@ mod tests {
             folder: folder.join("sounds"),
             format: FileFormat::Wav,
             seed: 0,
-            shard: Shard::WHOLE,
+            shard: Shard::new(1, 1).unwrap(),
             resume: false,
             at_once: Some(2),
         }

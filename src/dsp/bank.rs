@@ -7,7 +7,7 @@ use super::{ClassicBank, ModeBank};
 
 /// Selects the formulas that turn pitch and decay into coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Recurrence {
+pub(crate) enum Recurrence {
     /// Tuning and decay are exact, also during pitch bends; amplitudes do not depend on the pitch.
     Exact,
     /// The original formulas ([`super::Coefficients::seed`]), with the sweep kept below the value at which they are
@@ -37,7 +37,7 @@ macro_rules! either {
 
 impl Bank {
     /// An empty bank of the exact recurrence.
-    pub fn new(sample_rate: f64) -> Self {
+    pub(crate) fn new(sample_rate: f64) -> Self {
         Self::Exact(ModeBank::new(sample_rate))
     }
 
@@ -58,22 +58,17 @@ impl Bank {
     }
 
     /// See [`ModeBank::load`].
-    pub fn load(&mut self, modes: &ModeRows) {
+    pub(crate) fn load(&mut self, modes: &ModeRows) {
         either!(self, bank => bank.load(modes));
     }
 
     /// See [`ModeBank::len`].
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         either!(self, bank => bank.len())
     }
 
-    /// See [`ModeBank::is_empty`].
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// See [`ModeBank::set_excitation_gains`].
-    pub fn set_excitation_gains(&mut self, gains: &ExcitationRows) {
+    pub(crate) fn set_excitation_gains(&mut self, gains: &ExcitationRows) {
         either!(self, bank => bank.set_excitation_gains(gains));
     }
 
@@ -85,22 +80,22 @@ impl Bank {
     }
 
     /// See [`ModeBank::nudge`].
-    pub fn nudge(&mut self, m: usize, amplitude: f32) {
+    pub(crate) fn nudge(&mut self, m: usize, amplitude: f32) {
         either!(self, bank => bank.nudge(m, amplitude));
     }
 
     /// See [`ModeBank::set_t60`].
-    pub fn set_t60(&mut self, m: usize, t60: f64) {
+    pub(crate) fn set_t60(&mut self, m: usize, t60: f64) {
         either!(self, bank => bank.set_t60(m, t60));
     }
 
     /// See [`ModeBank::retune`].
-    pub fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
+    pub(crate) fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
         either!(self, bank => bank.retune(modes));
     }
 
     /// See [`ModeBank::sweep_to`].
-    pub fn sweep_to(&mut self, ratio: f64, frames: usize) {
+    pub(crate) fn sweep_to(&mut self, ratio: f64, frames: usize) {
         either!(self, bank => bank.sweep_to(ratio, frames));
     }
 
@@ -110,12 +105,12 @@ impl Bank {
     }
 
     /// See [`ModeBank::render`].
-    pub fn render(&mut self, drive: Option<&Drive>, frames: usize) -> [&[f32]; 2] {
+    pub(crate) fn render(&mut self, drive: Option<&Drive>, frames: usize) -> [&[f32]; 2] {
         either!(self, bank => bank.render(drive, frames))
     }
 
     /// See [`ModeBank::render_bowed`]. With the original formulas, the bow is ignored.
-    pub fn render_bowed(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
+    pub(crate) fn render_bowed(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
         match self {
             Self::Exact(bank) => bank.render_bowed(drive, bow, frames),
             Self::Classic(bank) => bank.render(drive, frames),
@@ -123,29 +118,26 @@ impl Bank {
     }
 
     /// See [`ModeBank::mass`].
-    pub fn mass(&self, m: usize) -> (f32, f32) {
+    pub(crate) fn mass(&self, m: usize) -> (f32, f32) {
         either!(self, bank => bank.mass(m))
     }
 
-    /// See [`ModeBank::at_rest`].
-    pub(super) fn at_rest(&self) -> Self {
-        match self {
-            Self::Exact(bank) => Self::Exact(bank.at_rest()),
-            Self::Classic(bank) => Self::Classic(bank.at_rest()),
-        }
+    /// See [`ModeBank::rest`].
+    pub(super) fn rest(&mut self) {
+        either!(self, bank => bank.rest());
     }
 
-    /// See [`ModeBank::with_state_of`]. The other bank has the same recurrence.
-    pub(super) fn with_state_of(&self, other: &Self) -> Self {
+    /// See [`ModeBank::take_state_of`]. The other bank has the same recurrence.
+    pub(super) fn take_state_of(&mut self, other: &Self) {
         match (self, other) {
-            (Self::Exact(bank), Self::Exact(other)) => Self::Exact(bank.with_state_of(other)),
-            (Self::Classic(bank), Self::Classic(other)) => Self::Classic(bank.with_state_of(other)),
-            _ => self.at_rest(),
+            (Self::Exact(bank), Self::Exact(other)) => bank.take_state_of(other),
+            (Self::Classic(bank), Self::Classic(other)) => bank.take_state_of(other),
+            (bank, _) => bank.rest(),
         }
     }
 
     /// See [`ModeBank::settle`].
-    pub fn settle(&mut self) -> f64 {
+    pub(crate) fn settle(&mut self) -> f64 {
         either!(self, bank => bank.settle())
     }
 

@@ -11,7 +11,7 @@ use super::mode_bank::tail::Energies;
 use super::mode_bank::{ExcitationRows, MAX_MODES, ModeRows};
 
 /// Maximum number of cells of one voice.
-pub const MAX_CELLS: usize = 8;
+pub(crate) const MAX_CELLS: usize = 8;
 
 /// A bank, with the frequency ratio and decay scale of each of its modes.
 #[derive(Clone)]
@@ -28,7 +28,7 @@ pub struct Cell {
 
 impl Cell {
     /// A cell without modes.
-    pub fn new(sample_rate: f64) -> Self {
+    pub(crate) fn new(sample_rate: f64) -> Self {
         Self {
             bank: Bank::new(sample_rate),
             ratios: [1.0; MAX_MODES],
@@ -40,7 +40,7 @@ impl Cell {
 }
 
 /// The cells of one voice. Modes are numbered consecutively through all cells, and energies are added up in that order.
-/// Cells are moved between owners: only [`Cell::new`] and copies allocate, and everything else is real-time safe.
+/// Cells are moved between owners: only `Cell::new` and copies allocate, and everything else is real-time safe.
 #[derive(Clone)]
 pub struct Cells {
     cells: [Option<Box<Cell>>; MAX_CELLS],
@@ -60,7 +60,7 @@ impl Cells {
     }
 
     /// Adds a cell. Returns it if there are [`MAX_CELLS`] already.
-    pub fn add(&mut self, cell: Box<Cell>) -> Option<Box<Cell>> {
+    pub(crate) fn add(&mut self, cell: Box<Cell>) -> Option<Box<Cell>> {
         let len = cell.bank.len();
         match self.cells.iter_mut().find(|place| place.is_none()) {
             Some(place) => {
@@ -72,7 +72,7 @@ impl Cells {
     }
 
     /// Removes the last cell and returns it.
-    pub fn take(&mut self) -> Option<Box<Cell>> {
+    pub(crate) fn take(&mut self) -> Option<Box<Cell>> {
         let cell = self.cells.iter_mut().rev().find_map(Option::take)?;
         self.len -= cell.bank.len();
         Some(cell)
@@ -86,20 +86,14 @@ impl Cells {
         self.cells.iter_mut().map_while(Option::as_deref_mut)
     }
 
-    /// Like [`super::ModeBank::at_rest`]. Allocates.
-    #[must_use]
-    pub fn at_rest(&self) -> Self {
-        let mut copy = self.clone();
-        copy.iter_mut().for_each(|cell| cell.bank = cell.bank.at_rest());
-        copy
+    /// Like [`super::ModeBank::rest`].
+    pub(crate) fn rest(&mut self) {
+        self.iter_mut().for_each(|cell| cell.bank.rest());
     }
 
-    /// Like [`super::ModeBank::with_state_of`]. Allocates.
-    #[must_use]
-    pub(crate) fn with_state_of(&self, other: &Self) -> Self {
-        let mut copy = self.clone();
-        copy.iter_mut().zip(other.iter()).for_each(|(cell, other)| cell.bank = cell.bank.with_state_of(&other.bank));
-        copy
+    /// Like [`super::ModeBank::take_state_of`].
+    pub(crate) fn take_state_of(&mut self, other: &Self) {
+        self.iter_mut().zip(other.iter()).for_each(|(cell, other)| cell.bank.take_state_of(&other.bank));
     }
 
     /// Frequency of each mode as a multiple of the note's frequency, a row for each cell. Write these before
@@ -121,7 +115,7 @@ impl Cells {
 
     /// Fills the cells with modes at rest. `setup` computes those of a cell from its part of `modes`, and from the rows of their
     /// ratios, T60 scales and squared shapes at the point of touch. Nothing remains of earlier modes.
-    pub fn load<T>(
+    pub(crate) fn load<T>(
         &mut self,
         recurrence: Recurrence,
         sample_rate: f64,
@@ -137,7 +131,7 @@ impl Cells {
 
     /// Like [`super::ModeBank::retune`]: `tuning` computes a mode's frequency in Hz and its T60 in seconds from its
     /// ratio, its T60 scale, and its squared shape at the point of touch.
-    pub fn retune(&mut self, tuning: impl Fn(f64, f64, f64) -> (f64, f64) + Copy) {
+    pub(crate) fn retune(&mut self, tuning: impl Fn(f64, f64, f64) -> (f64, f64) + Copy) {
         for Cell { bank, ratios, t60_scales, touched, .. } in self.iter_mut() {
             let rows = ratios.iter().zip(t60_scales).zip(touched);
             bank.retune(rows.map(|((ratio, scale), touched)| tuning(*ratio, *scale, f64::from(*touched))));
@@ -146,38 +140,33 @@ impl Cells {
 
     /// Like [`super::ModeBank::set_t60`], for all modes: `t60` computes the T60 in seconds from a mode's T60 scale and its
     /// squared shape at the point of touch.
-    pub fn damp(&mut self, t60: impl Fn(f64, f64) -> f64) {
+    pub(crate) fn damp(&mut self, t60: impl Fn(f64, f64) -> f64) {
         for Cell { bank, t60_scales, touched, .. } in self.iter_mut() {
             (0..bank.len()).for_each(|m| bank.set_t60(m, t60(t60_scales[m], f64::from(touched[m]))));
         }
     }
 
     /// Number of modes.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there are no modes.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// Like [`super::ModeBank::set_excitation_gains`], for the modes of a cell. Does nothing if there is no such cell.
-    pub fn set_excitation_gains(&mut self, cell: usize, gains: &ExcitationRows) {
+    pub(crate) fn set_excitation_gains(&mut self, cell: usize, gains: &ExcitationRows) {
         if let Some(Some(cell)) = self.cells.get_mut(cell) {
             cell.bank.set_excitation_gains(gains);
         }
     }
 
     /// Like [`super::ModeBank::nudge`]. Does nothing if there is no mode `m`.
-    pub fn nudge(&mut self, m: usize, amplitude: f32) {
+    pub(crate) fn nudge(&mut self, m: usize, amplitude: f32) {
         if let Some(Some(cell)) = self.cells.get_mut(m / MAX_MODES) {
             cell.bank.nudge(m % MAX_MODES, amplitude);
         }
     }
 
     /// Like [`super::ModeBank::sweep_to`].
-    pub fn sweep_to(&mut self, ratio: f64, frames: usize) {
+    pub(crate) fn sweep_to(&mut self, ratio: f64, frames: usize) {
         self.iter_mut().for_each(|cell| cell.bank.sweep_to(ratio, frames));
     }
 
@@ -199,7 +188,7 @@ impl Cells {
     }
 
     /// As [`super::ModeBank::render_bowed`]. The drive acts on all cells, the bow only on the first.
-    pub fn render(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
+    pub(crate) fn render(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
         let Self { cells, sum, .. } = self;
         let frames = frames.min(CONTROL_FRAMES);
         let (first, rest) = cells.split_at_mut(1);
@@ -219,14 +208,14 @@ impl Cells {
     }
 
     /// Like [`super::ModeBank::mass`], for the modes of the first cell: at most [`MAX_MODES`].
-    pub fn masses(&self) -> impl Iterator<Item = (f32, f32)> {
+    pub(crate) fn masses(&self) -> impl Iterator<Item = (f32, f32)> {
         let bank = self.iter().next().map(|cell| &cell.bank);
         bank.into_iter().flat_map(|bank| (0..bank.len()).map(|m| bank.mass(m)))
     }
 
     /// Each mode: its frequency as a multiple of the note's, its T60 as a multiple of the note's decay, its squared shape at the
     /// point of touch, and its squared amplitude.
-    pub fn modes(&self) -> impl Iterator<Item = (f64, f64, f64, f64)> {
+    pub(crate) fn modes(&self) -> impl Iterator<Item = (f64, f64, f64, f64)> {
         self.iter().flat_map(|cell| {
             let energy = |m| f64::from(cell.bank.mass(m).1);
             let row = move |m| (cell.ratios[m], cell.t60_scales[m], f64::from(cell.touched[m]), energy(m));
@@ -235,7 +224,7 @@ impl Cells {
     }
 
     /// Like [`super::ModeBank::settle`].
-    pub fn settle(&mut self) -> f64 {
+    pub(crate) fn settle(&mut self) -> f64 {
         self.iter_mut().map(|cell| cell.bank.settle()).sum()
     }
 

@@ -161,7 +161,7 @@ fn limit(zeta: f64) -> f64 {
 
 impl ClassicBank {
     /// An empty bank.
-    pub fn new(sample_rate: f64) -> Self {
+    pub(crate) fn new(sample_rate: f64) -> Self {
         Self {
             sample_rate,
             len: 0,
@@ -179,7 +179,7 @@ impl ClassicBank {
     }
 
     /// Like [`super::ModeBank::load`].
-    pub fn load(&mut self, modes: &ModeRows) {
+    pub(crate) fn load(&mut self, modes: &ModeRows) {
         let ModeRows { frequency, t60, left, right, len } = modes;
         self.len = (*len).min(MAX_MODES);
         for (m, mode) in self.modes[..self.len].iter_mut().enumerate() {
@@ -190,23 +190,18 @@ impl ClassicBank {
     }
 
     /// Number of modes.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether the bank has no modes.
-    pub fn is_empty(&self) -> bool {
-        self.len == 0
-    }
-
     /// Like [`super::ModeBank::set_excitation_gains`].
-    pub fn set_excitation_gains(&mut self, gains: &ExcitationRows) {
+    pub(crate) fn set_excitation_gains(&mut self, gains: &ExcitationRows) {
         self.tune();
         self.modes().iter_mut().enumerate().for_each(|(m, mode)| mode.set_excitation_gains(gains.at(m)));
     }
 
     /// Like [`super::ModeBank::nudge`]; as with strikes, the original formulas give a high mode more than `amplitude`.
-    pub fn nudge(&mut self, m: usize, amplitude: f32) {
+    pub(crate) fn nudge(&mut self, m: usize, amplitude: f32) {
         self.tune();
         if let Some(mode) = self.modes().get_mut(m) {
             mode.mass.v += (amplitude * mode.unit_push).copysign(mode.mass.v);
@@ -215,13 +210,13 @@ impl ClassicBank {
     }
 
     /// Like [`super::ModeBank::set_t60`].
-    pub fn set_t60(&mut self, m: usize, t60: f64) {
+    pub(crate) fn set_t60(&mut self, m: usize, t60: f64) {
         self.modes[m].t60 = t60;
         self.retuned = true;
     }
 
     /// Like [`super::ModeBank::retune`].
-    pub fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
+    pub(crate) fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
         let before: [f64; MAX_MODES] = std::array::from_fn(|m| self.modes[m].mass.coefficients().omega2);
         for (mode, tuning) in self.modes().iter_mut().zip(modes) {
             (mode.frequency, mode.t60) = tuning;
@@ -245,7 +240,7 @@ impl ClassicBank {
     }
 
     /// Like [`super::ModeBank::sweep_to`].
-    pub fn sweep_to(&mut self, ratio: f64, frames: usize) {
+    pub(crate) fn sweep_to(&mut self, ratio: f64, frames: usize) {
         let passed = self.line_frames.saturating_sub(self.until_tick);
         self.modes().iter_mut().for_each(|mode| mode.bound(passed));
         let same = ratio == self.ratio && !self.retuned;
@@ -274,7 +269,7 @@ impl ClassicBank {
     }
 
     /// Like [`super::ModeBank::render`].
-    pub fn render(&mut self, drive: Option<&Drive>, frames: usize) -> [&[f32]; 2] {
+    pub(crate) fn render(&mut self, drive: Option<&Drive>, frames: usize) -> [&[f32]; 2] {
         let frames = frames.min(CONTROL_FRAMES);
         let drive = drive.unwrap_or(&Drive::NONE);
         let area = |force: &[f32]| force[..frames].iter().map(|force| f64::from(force.abs())).sum::<f64>();
@@ -304,29 +299,23 @@ impl ClassicBank {
     }
 
     /// Like [`super::ModeBank::mass`].
-    pub fn mass(&self, m: usize) -> (f32, f32) {
+    pub(crate) fn mass(&self, m: usize) -> (f32, f32) {
         (self.modes[m].mass.x, self.modes[m].energy() as f32)
     }
 
-    /// Like [`super::ModeBank::at_rest`].
-    #[must_use]
-    pub fn at_rest(&self) -> Self {
-        let mut copy = self.clone();
-        copy.modes.iter_mut().for_each(|mode| (mode.mass.x, mode.mass.v) = (0.0, 0.0));
-        copy
+    /// Like [`super::ModeBank::rest`].
+    pub(crate) fn rest(&mut self) {
+        self.modes.iter_mut().for_each(|mode| (mode.mass.x, mode.mass.v) = (0.0, 0.0));
     }
 
-    /// Like [`super::ModeBank::with_state_of`].
-    #[must_use]
-    pub(crate) fn with_state_of(&self, other: &Self) -> Self {
-        let mut copy = self.clone();
-        let states = copy.modes.iter_mut().zip(&other.modes);
+    /// Like [`super::ModeBank::take_state_of`].
+    pub(crate) fn take_state_of(&mut self, other: &Self) {
+        let states = self.modes.iter_mut().zip(&other.modes);
         states.for_each(|(mode, other)| (mode.mass.x, mode.mass.v) = (other.mass.x, other.mass.v));
-        copy
     }
 
     /// Like [`super::ModeBank::settle`].
-    pub fn settle(&mut self) -> f64 {
+    pub(crate) fn settle(&mut self) -> f64 {
         let mut total = 0.0;
         for mode in self.modes() {
             let energy = mode.energy();

@@ -106,12 +106,12 @@ impl Coefficients {
     }
 
     /// Amplitude ratio per sample, `r = √(1−ζ)`.
-    pub fn radius(&self) -> f64 {
+    pub(crate) fn radius(&self) -> f64 {
         sqrt(1.0 - self.zeta)
     }
 
     /// Angle per sample `θ`, for coefficients that oscillate. NaN for others (over-damped or unstable).
-    pub fn angle(&self) -> f64 {
+    pub(crate) fn angle(&self) -> f64 {
         let radius = self.radius();
         let loss = 1.0 - radius;
         2.0 * asin(sqrt((self.omega2 - loss * loss) / (4.0 * radius)))
@@ -130,11 +130,6 @@ impl Coefficients {
     /// for coefficients that oscillate. Real-time safe.
     pub fn amplitude(&self, x: f64, v: f64) -> f64 {
         sqrt(self.quadratic_form(x, v).max(0.0) / self.sin_squared_angle())
-    }
-
-    /// Energy of the state relative to that of unit amplitude: the square of [`Coefficients::amplitude`].
-    pub fn energy(&self, x: f64, v: f64) -> f64 {
-        self.quadratic_form(x, v).max(0.0) / self.sin_squared_angle()
     }
 
     /// `A² sin²θ` of a state: each step multiplies it by `r²`.

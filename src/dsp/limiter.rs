@@ -1,8 +1,8 @@
 //! A stereo true-peak limiter without latency: it lowers peaks above −0.92 dBFS and changes nothing else.
 //!
 //! The gain falls at once, is held until the next peak of tones down to 17 Hz, and then rises slowly. A
-//! peak between two samples is only known after half of [`TAPS`] further samples have been output. Until the gain
-//! follows, single samples are lowered so that no partial sum of an interpolated point exceeds [`GUARD`]; the partial
+//! peak between two samples is only known after half of `TAPS` further samples have been output. Until the gain
+//! follows, single samples are lowered so that no partial sum of an interpolated point exceeds `GUARD`; the partial
 //! sum is the value of the point if only silence follows. This is always possible, because a sample of 0 adds nothing
 //! to any point.
 //!
@@ -19,14 +19,14 @@ use libm::exp;
 
 /// The gain is 1 while no peak, on a sample or between two, exceeds this level, −0.92 dBFS. The difference from −1 dBFS
 /// allows for meters that interpolate differently.
-pub const THRESHOLD: f32 = 0.9;
+pub(crate) const THRESHOLD: f32 = 0.9;
 
 /// Level to which higher peaks are lowered, −1.9 dBFS. An incomplete point of a sine can exceed the sine's peak by a
 /// factor of 1.17, which gives [`GUARD`] at this level. So for a steady tone, only the gain acts.
-pub const CEILING: f32 = 0.805;
+pub(crate) const CEILING: f32 = 0.805;
 
 /// Upper bound of the waveform between samples, −0.45 dBFS; −0.3 dBFS on meters that interpolate differently.
-pub const GUARD: f32 = 0.95;
+pub(crate) const GUARD: f32 = 0.95;
 
 /// Samples below this level cannot have a peak above [`THRESHOLD`] between them, since the weights of a point add up to
 /// 1.865.
@@ -50,9 +50,9 @@ const SCAN: usize = 64;
 
 /// Holds a stereo signal's true peak to about −0.3 dBFS, with the same gain on both sides and no latency.
 ///
-/// A signal whose true peak stays below −1 dBFS passes bit for bit. From the first peak above [`THRESHOLD`] on, the
-/// points between samples stay below [`GUARD`], as this module interpolates them. Samples that were output before that
-/// peak cannot be changed any more. Where samples below the threshold stop or change sign within [`TAPS`] samples, as
+/// A signal whose true peak stays below −1 dBFS passes bit for bit. From the first peak above `THRESHOLD` on, the
+/// points between samples stay below `GUARD`, as this module interpolates them. Samples that were output before that
+/// peak cannot be changed any more. Where samples below the threshold stop or change sign within `TAPS` samples, as
 /// in white noise, the point between them may exceed the guard before the gain has fallen. Measured: +0.6 dBFS in noise,
 /// and +0.9 dBFS for two single samples of 0.89. Only a limiter with latency could avoid this.
 ///
@@ -95,7 +95,7 @@ pub struct Work {
 
 impl Work {
     /// No work yet.
-    pub const NONE: Self = Self { least_gain: 1.0, frames: 0, non_finite: 0 };
+    pub(crate) const NONE: Self = Self { least_gain: 1.0, frames: 0, non_finite: 0 };
 }
 
 impl Limiter {
@@ -121,7 +121,7 @@ impl Limiter {
     }
 
     /// Returns to the initial state, as after silence.
-    pub fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         self.recent_peaks.clear();
         self.set_ceiling(THRESHOLD);
         (self.gain, self.work) = (1.0, Work::NONE);

@@ -24,7 +24,7 @@ pub struct HarmonicOscillator<T> {
 
 impl HarmonicOscillator<f32> {
     /// At rest, with neither spring nor damper.
-    pub const REST: Self = Self { x: 0.0, v: 0.0, zeta: 0.0, omega2: 0.0 };
+    pub(crate) const REST: Self = Self { x: 0.0, v: 0.0, zeta: 0.0, omega2: 0.0 };
 }
 
 impl<T: Real> HarmonicOscillator<T> {
@@ -67,13 +67,13 @@ impl<T: Real> HarmonicOscillator<T> {
     }
 
     /// Changes decay or pitch from the next step on. The displacement is continuous.
-    pub fn damp(&mut self, coefficients: &Coefficients) {
+    pub(crate) fn damp(&mut self, coefficients: &Coefficients) {
         self.zeta = T::from_f64(coefficients.zeta);
         self.omega2 = T::from_f64(coefficients.omega2);
     }
 
     /// The coefficients in use, with the present state as the starting state.
-    pub fn coefficients(&self) -> Coefficients {
+    pub(crate) fn coefficients(&self) -> Coefficients {
         Coefficients {
             zeta: self.zeta.to_f64(),
             omega2: self.omega2.to_f64(),
@@ -85,11 +85,6 @@ impl<T: Real> HarmonicOscillator<T> {
     /// Amplitude of the oscillation at this sample, in closed form.
     pub fn amplitude(&self) -> f64 {
         self.coefficients().amplitude(self.x.to_f64(), self.v.to_f64())
-    }
-
-    /// The square of [`HarmonicOscillator::amplitude`].
-    pub fn energy(&self) -> f64 {
-        self.coefficients().energy(self.x.to_f64(), self.v.to_f64())
     }
 }
 

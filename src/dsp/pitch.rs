@@ -34,7 +34,7 @@ impl SweepEnvelope {
 
 /// A glide in semitones at constant speed, as a function of time. Real-time safe.
 #[derive(Clone, Copy, Debug)]
-pub struct Glide {
+pub(crate) struct Glide {
     from: f64,
     to: f64,
     seconds: f64,
@@ -42,12 +42,12 @@ pub struct Glide {
 
 impl Glide {
     /// A glide from `from` to `to` in `seconds`; 0 is a jump.
-    pub fn new(from: f64, to: f64, seconds: f64) -> Self {
+    pub(crate) fn new(from: f64, to: f64, seconds: f64) -> Self {
         Self { from, to, seconds }
     }
 
     /// Semitones, `time` seconds after the start.
-    pub fn at(&self, time: f64) -> f64 {
+    pub(crate) fn at(&self, time: f64) -> f64 {
         if time >= self.seconds { self.to } else { self.from + (self.to - self.from) * (time / self.seconds) }
     }
 }

@@ -4,7 +4,7 @@
 ///
 /// The value depends only on the number of elapsed frames, not on the block size.
 #[derive(Clone, Copy, Debug)]
-pub struct Ramp {
+pub(crate) struct Ramp {
     from: f32,
     to: f32,
     frames: u32,
@@ -13,17 +13,17 @@ pub struct Ramp {
 
 impl Ramp {
     /// A ramp that stays at `value`.
-    pub fn at_rest(value: f32) -> Self {
+    pub(crate) fn at_rest(value: f32) -> Self {
         Self { from: value, to: value, frames: 0, elapsed: 0 }
     }
 
     /// Starts a ramp from the present value to `target`, which is reached after `frames`.
-    pub fn set(&mut self, target: f32, frames: u32) {
+    pub(crate) fn set(&mut self, target: f32, frames: u32) {
         *self = Self { from: self.after(0), to: target, frames, elapsed: 0 };
     }
 
     /// The value `frames` frames from now.
-    pub fn after(&self, frames: u32) -> f32 {
+    pub(crate) fn after(&self, frames: u32) -> f32 {
         let elapsed = self.elapsed.saturating_add(frames);
         if elapsed >= self.frames {
             self.to
@@ -33,7 +33,7 @@ impl Ramp {
     }
 
     /// Advances by `frames` frames.
-    pub fn advance(&mut self, frames: u32) {
+    pub(crate) fn advance(&mut self, frames: u32) {
         self.elapsed = self.elapsed.saturating_add(frames);
     }
 }

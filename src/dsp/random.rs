@@ -29,6 +29,38 @@ pub fn unit(key: u64, n: u64) -> f64 {
     (bits(key, n) >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
 }
 
+/// The numbers of a stream one after another, from the first on: those of SplitMix64 with its key as the seed.
+#[derive(Clone, Debug)]
+pub struct Sequence {
+    key: u64,
+    drawn: u64,
+}
+
+impl Sequence {
+    /// Of the stream of a [`key`], or of any other number.
+    pub const fn new(key: u64) -> Self {
+        Self { key, drawn: 0 }
+    }
+
+    /// From 0 to below `bound`, the remainder of the stream's next 64 bits.
+    pub fn below(&mut self, bound: usize) -> usize {
+        self.drawn += 1;
+        (bits(self.key, self.drawn) % bound as u64) as usize
+    }
+
+    /// Uniform in [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        self.drawn += 1;
+        unit(self.key, self.drawn)
+    }
+
+    /// Uniform in [−1, 1).
+    pub fn uniform(&mut self) -> f32 {
+        self.drawn += 1;
+        uniform(self.key, self.drawn)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

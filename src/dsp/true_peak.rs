@@ -4,7 +4,7 @@ use libm::{cos, sin};
 use std::f64::consts::PI;
 
 /// Number of samples from which each point is interpolated.
-pub const TAPS: usize = 12;
+pub(crate) const TAPS: usize = 12;
 
 /// Points per sample: the sample itself and three between it and the next one.
 const POINTS: usize = 4;

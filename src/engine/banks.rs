@@ -25,11 +25,11 @@ pub(crate) const MELODIC_BANK: u8 = 121;
 
 /// The bank that each channel has selected. Real-time safe.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Banks([u8; 16]);
+pub(crate) struct Banks([u8; 16]);
 
 impl Banks {
     /// Returns the event. A program change gets the number of its program in a list of melodic sounds and drum kits.
-    pub fn resolve(&mut self, channel: u8, kind: EventKind) -> EventKind {
+    pub(crate) fn resolve(&mut self, channel: u8, kind: EventKind) -> EventKind {
         let channel = nearest_channel(channel);
         let bank = &mut self.0[usize::from(channel)];
         match kind {

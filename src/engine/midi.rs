@@ -21,11 +21,11 @@ pub mod controller {
     /// Data entry, least significant seven bits.
     pub(crate) const DATA_FINE: u8 = 38;
     /// Sustain pedal.
-    pub const SUSTAIN: u8 = 64;
+    pub(crate) const SUSTAIN: u8 = 64;
     /// Sostenuto pedal.
     pub(crate) const SOSTENUTO: u8 = 66;
     /// Soft pedal.
-    pub const SOFT: u8 = 67;
+    pub(crate) const SOFT: u8 = 67;
     /// Brightness.
     pub(crate) const BRIGHTNESS: u8 = 74;
     /// How much of a channel is sent to the space that a song's channels share.
@@ -41,7 +41,7 @@ pub mod controller {
     /// Selects a registered parameter, least significant seven bits.
     pub(crate) const RPN_FINE: u8 = 100;
     /// Selects a registered parameter, most significant seven bits.
-    pub const RPN: u8 = 101;
+    pub(crate) const RPN: u8 = 101;
     /// All sound off.
     pub(crate) const ALL_SOUND_OFF: u8 = 120;
     /// Reset all controllers.

@@ -81,7 +81,7 @@ impl Telemetry {
     }
 
     /// Frames played.
-    pub fn frames(&self) -> u64 {
+    pub(crate) fn frames(&self) -> u64 {
         self.frames.load(Relaxed)
     }
 

@@ -5,7 +5,7 @@ use plotters::style::RGBColor;
 /// Text and axes.
 pub(crate) const INK: RGBColor = RGBColor(40, 40, 46);
 /// Grid lines.
-pub const GRID: RGBColor = RGBColor(226, 226, 230);
+pub(crate) const GRID: RGBColor = RGBColor(226, 226, 230);
 
 /// Blue of `SERIES`: left channels, expected signals.
 pub(crate) const BLUE: RGBColor = SERIES[0];
@@ -23,7 +23,7 @@ const SERIES: [RGBColor; 6] = [
 ];
 
 /// Colour of the `n`-th series, and whether its line is dashed: twelve different combinations.
-pub fn series(n: usize) -> (RGBColor, bool) {
+pub(crate) fn series(n: usize) -> (RGBColor, bool) {
     (SERIES[n % SERIES.len()], (n / SERIES.len()) % 2 == 1)
 }
 
@@ -42,7 +42,7 @@ const VIRIDIS: [[f64; 3]; 9] = [
 
 /// The colour at `position`, from 0 (dark) to 1 (bright). The lightness rises evenly, so that it can also be read in
 /// grey.
-pub fn viridis(position: f64) -> RGBColor {
+pub(crate) fn viridis(position: f64) -> RGBColor {
     let position = if position.is_nan() { 0.0 } else { position.clamp(0.0, 1.0) };
     let scaled = position * (VIRIDIS.len() - 1) as f64;
     let index = (scaled as usize).min(VIRIDIS.len() - 2);

@@ -2,7 +2,7 @@
 
 /// The samples as points. If there are many, only the minimum and the maximum of each interval are kept; there are two
 /// intervals for each of the `columns`.
-pub fn envelope(samples: &[f32], sample_rate: f64, columns: usize) -> Vec<(f64, f64)> {
+pub(crate) fn envelope(samples: &[f32], sample_rate: f64, columns: usize) -> Vec<(f64, f64)> {
     let seconds = |frame: usize| frame as f64 / sample_rate;
     let value = |sample: f32| if sample.is_finite() { f64::from(sample) } else { 0.0 };
     if samples.len() <= 3 * columns.max(1) {

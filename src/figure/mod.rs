@@ -11,7 +11,7 @@ use plotters::prelude::*;
 use std::sync::Once;
 
 /// A part of a figure.
-pub type Area<B> = DrawingArea<B, Shift>;
+pub(crate) type Area<B> = DrawingArea<B, Shift>;
 /// A result of drawing on backend `B`.
 pub(crate) type Drawn<B> = std::result::Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
@@ -27,7 +27,7 @@ pub trait Picture {
 const FONT: &str = "monospace";
 
 /// Text style of `size` pixels.
-pub fn text(size: i32) -> TextStyle<'static> {
+pub(crate) fn text(size: i32) -> TextStyle<'static> {
     static READY: Once = Once::new();
     READY.call_once(|| {
         let registered = plotters::style::register_font(FONT, FontStyle::Normal, epaint_default_fonts::HACK_REGULAR);
@@ -44,7 +44,7 @@ pub fn svg(picture: &impl Picture) -> Result<String> {
 }
 
 /// The picture's pixels: rows of red, green, blue.
-pub fn rgb(picture: &impl Picture) -> Result<Vec<u8>> {
+pub(crate) fn rgb(picture: &impl Picture) -> Result<Vec<u8>> {
     let (width, height) = picture.size();
     let mut pixels = vec![0; width as usize * height as usize * 3];
     drawn(picture, &BitMapBackend::with_buffer(&mut pixels, (width, height)).into_drawing_area())?;

@@ -67,7 +67,7 @@ pub(crate) struct Panel<'a> {
 }
 
 /// A coordinate with the ticks chosen here.
-pub struct Ticked {
+pub(crate) struct Ticked {
     range: Range<f64>,
     ticks: Vec<f64>,
 }
@@ -132,7 +132,7 @@ impl Panel<'_> {
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug)]
-pub struct Stroke {
+pub(crate) struct Stroke {
     /// Its colour.
     pub colour: RGBColor,
     /// Width in pixels.
@@ -142,7 +142,7 @@ pub struct Stroke {
 }
 
 /// Draws a line through `points`, as far as it lies within the axes.
-pub fn line<B: DrawingBackend>(chart: &mut Chart<B>, points: &[(f64, f64)], stroke: Stroke) -> Drawn<B> {
+pub(crate) fn line<B: DrawingBackend>(chart: &mut Chart<B>, points: &[(f64, f64)], stroke: Stroke) -> Drawn<B> {
     let (x, y) = (chart.x_range(), chart.y_range());
     let style = stroke.colour.stroke_width(stroke.width);
     for piece in clipped(points, &x, &y) {
@@ -156,7 +156,7 @@ pub fn line<B: DrawingBackend>(chart: &mut Chart<B>, points: &[(f64, f64)], stro
 }
 
 /// The pieces of a polyline within a rectangle. A point that is not a number ends a piece.
-pub fn clipped(points: &[(f64, f64)], x: &Range<f64>, y: &Range<f64>) -> Vec<Vec<(f64, f64)>> {
+pub(crate) fn clipped(points: &[(f64, f64)], x: &Range<f64>, y: &Range<f64>) -> Vec<Vec<(f64, f64)>> {
     let mut pieces: Vec<Vec<(f64, f64)>> = Vec::new();
     let mut joined = false;
     for pair in points.windows(2) {

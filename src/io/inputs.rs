@@ -27,7 +27,7 @@ impl Inputs {
     ///
     /// # Errors
     /// [`Error::Io`] if it cannot be read.
-    pub fn stdin(&mut self) -> Result<Stdin> {
+    pub(crate) fn stdin(&mut self) -> Result<Stdin> {
         let handle = Handle::stdin().map_err(|source| Error::io("stdin", source))?;
         self.add("stdin".into(), handle);
         Ok(io::stdin())

@@ -45,7 +45,7 @@ impl Song {
     /// data after the declared number of tracks is ignored.
     ///
     /// # Errors
-    /// [`Error::Format`]. The message says so if [`Song::parse_leniently`] could read the file.
+    /// [`Error::Format`]. The message says so if `Song::parse_leniently` could read the file.
     pub fn parse(bytes: &[u8], origin: &str) -> crate::Result<Self> {
         parse(bytes, false).map(|(song, _)| song).map_err(|mut message| {
             if parse(bytes, true).is_ok() {
@@ -63,7 +63,7 @@ impl Song {
     ///
     /// # Errors
     /// [`Error::Format`] for all other faults.
-    pub fn parse_leniently(bytes: &[u8], origin: &str) -> crate::Result<(Self, Vec<String>)> {
+    pub(crate) fn parse_leniently(bytes: &[u8], origin: &str) -> crate::Result<(Self, Vec<String>)> {
         parse(bytes, true).map_err(|message| Error::format(origin, message))
     }
 }

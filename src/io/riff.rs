@@ -27,7 +27,7 @@ impl WavFormat {
     ///
     /// # Errors
     /// [`Error::Value`] if a file cannot be that long, or if the rate is not one of the engine's.
-    pub fn file_len(&self, frames: u64) -> crate::Result<u64> {
+    pub(crate) fn file_len(&self, frames: u64) -> crate::Result<u64> {
         check_rate(self.sample_rate).map_err(|message| Error::value("rate", message))?;
         let header_len = header(self, 0).len() as u64;
         let data_len = frames.checked_mul(self.frame_len()).filter(|len| *len < MAX_LEN - header_len);

@@ -21,13 +21,13 @@ impl SongEvent {
     }
 
     /// The event, at a frame of a block.
-    pub fn at(&self, frame: u32) -> Event {
+    pub(crate) fn at(&self, frame: u32) -> Event {
         Event { frame, channel: self.channel, kind: self.kind }
     }
 }
 
 /// The number of frames nearest to a time in seconds, limited to the range of `u64`.
-pub fn frames(seconds: f64, sample_rate: f64) -> u64 {
+pub(crate) fn frames(seconds: f64, sample_rate: f64) -> u64 {
     (seconds * sample_rate).round() as u64
 }
 
@@ -67,14 +67,14 @@ impl Song {
         Self { events: on, seconds }
     }
 
-    /// Converts program changes, by bank, to places in a list of melodic sounds and drum kits: see [`Banks`].
+    /// Converts program changes, by bank, to places in a list of melodic sounds and drum kits: see `Banks`.
     pub fn select_by_bank(&mut self) {
         let mut banks = Banks::default();
         self.events.iter_mut().for_each(|event| event.kind = banks.resolve(event.channel, event.kind));
     }
 
     /// The song's length in frames.
-    pub fn frames(&self, sample_rate: f64) -> u64 {
+    pub(crate) fn frames(&self, sample_rate: f64) -> u64 {
         frames(self.seconds, sample_rate)
     }
 }

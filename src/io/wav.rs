@@ -28,7 +28,7 @@ impl<W: Write + Seek> WavWriter<W> {
     /// 1992). Floats are not rounded and get no noise.
     ///
     /// # Errors
-    /// [`Error::Io`] if the header cannot be written, [`Error::Value`] as [`WavFormat::file_len`].
+    /// [`Error::Io`] if the header cannot be written, [`Error::Value`] as `WavFormat::file_len`.
     pub fn new(mut out: W, name: &str, format: WavFormat, dither: Option<u64>, frames: Option<u64>) -> Result<Self> {
         format.file_len(frames.unwrap_or(0))?;
         out.write_all(&riff::header(&format, frames.unwrap_or(0))).map_err(|source| Error::io(name, source))?;
@@ -71,7 +71,7 @@ impl<W: Write + Seek> WavWriter<W> {
     }
 
     /// Number of samples so far that were clipped. Only integers are.
-    pub fn clipped(&self) -> u64 {
+    pub(crate) fn clipped(&self) -> u64 {
         self.clipped
     }
 

@@ -2,45 +2,12 @@
 //!
 //! Source: "Damped Harmonic Oscillator", its general form `(I τ₀ + M τ₁) e^(−λ̄t)` with `M = [[λ̄, 1], [−ω², −λ̄]]` and
 //! `σ² = λ̄² − ω²`. `τ₀` and `τ₁` are the even and the odd part of `e^(σt)`, the latter divided by `σ`: `cos κt`, `1`
-//! or `cosh αt`, and `sin κt/κ`, `t` or `sinh αt/α`. The amplitude–phase form of the undamped case is that of the
-//! mass-spring notebook, `A cos(ωt + φ)`.
+//! or `cosh αt`, and `sin κt/κ`, `t` or `sinh αt/α`.
 
 use super::system::{State, System};
 use crate::error::{Error, Result};
-use libm::{atan2, cos, exp, expm1, hypot, sin, sqrt};
+use libm::{cos, exp, expm1, sin, sqrt};
 use std::f64::consts::TAU;
-
-/// The damping regimes of a linear system.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Regime {
-    /// `λ̄ = 0`: rings forever.
-    Undamped,
-    /// `λ̄ < ω`: rings and decays.
-    Underdamped,
-    /// `λ̄ = ω`: returns as fast as it can without ringing.
-    CriticallyDamped,
-    /// `λ̄ > ω`: returns slowly, without ringing.
-    Overdamped,
-    /// `ω = 0`: slows down and stops, at any position.
-    Unsprung,
-    /// Neither spring nor damper: moves on at constant speed.
-    Unimpeded,
-}
-
-impl Regime {
-    /// The regime of a linear system.
-    pub fn of(system: &System) -> Self {
-        let squared = sigma_squared(system);
-        match (system.damping > 0.0, system.stiffness > 0.0) {
-            (false, false) => Self::Unimpeded,
-            (true, false) => Self::Unsprung,
-            (false, true) => Self::Undamped,
-            _ if squared < 0.0 => Self::Underdamped,
-            _ if squared > 0.0 => Self::Overdamped,
-            _ => Self::CriticallyDamped,
-        }
-    }
-}
 
 /// `σ² = λ̄² − ω²`; negative if the system rings.
 fn sigma_squared(system: &System) -> f64 {
@@ -49,7 +16,7 @@ fn sigma_squared(system: &System) -> f64 {
 
 /// The matrix that maps `(x − target, v)` at one time to a later time, without a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Transition {
+pub(crate) struct Transition {
     rows: [[f64; 2]; 2],
     /// `τ₁ e^(−λ̄t)`: the displacement per unit of initial velocity.
     pub reach: f64,
@@ -57,7 +24,7 @@ pub struct Transition {
 
 impl Transition {
     /// The transition of a linear system over `t` seconds.
-    pub fn over(system: &System, t: f64) -> Self {
+    pub(crate) fn over(system: &System, t: f64) -> Self {
         let lambda = system.decay_rate();
         let omega_squared = system.stiffness / system.mass;
         let squared = sigma_squared(system);
@@ -80,7 +47,7 @@ impl Transition {
 
     /// The state after this time, from the displacement `d = x − target` and the velocity.
     #[inline]
-    pub fn apply(&self, d: f64, v: f64) -> (f64, f64) {
+    pub(crate) fn apply(&self, d: f64, v: f64) -> (f64, f64) {
         let [[a, b], [c, e]] = self.rows;
         (a * d + b * v, c * d + e * v)
     }
@@ -108,7 +75,7 @@ impl ClosedForm {
     }
 
     /// The state at `t` seconds.
-    pub fn at(&self, t: f64) -> State {
+    pub(crate) fn at(&self, t: f64) -> State {
         let (d, v) = Transition::over(&self.system, t).apply(self.free.x, self.free.v);
         let forced = forced_motion(&self.system, t);
         State { x: self.system.target + d + forced.x, v: v + forced.v }
@@ -142,76 +109,21 @@ fn forced_motion(system: &System, t: f64) -> State {
     }
 }
 
-/// `x = target + A e^(−λ̄t) cos(κt + φ)`, the form of a motion that rings.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AmplitudePhase {
-    /// `A` in m.
-    pub amplitude: f64,
-    /// `φ` in rad.
-    pub phase: f64,
-    /// `κ = √(ω² − λ̄²)` in rad/s; `ω` itself without damping.
-    pub omega: f64,
-    /// `λ̄` in 1/s.
-    pub decay_rate: f64,
-    target: f64,
-}
-
-impl AmplitudePhase {
-    /// From the state at time 0. Returns an error if the motion does not ring, is forced, or the spring is not linear.
-    pub fn new(system: &System, start: State) -> Result<Self> {
-        let squared = sigma_squared(system);
-        if !system.is_linear() || system.force.amplitude != 0.0 || squared >= 0.0 {
-            let message =
-                "amplitude and phase describe a linear spring that rings freely: damping below 2√(k m), no force";
-            return Err(Error::value("damping", message));
-        }
-        let (omega, decay_rate) = (sqrt(-squared), system.decay_rate());
-        let d = start.x - system.target;
-        let quadrature = -(start.v + decay_rate * d) / omega;
-        let (amplitude, phase) = (hypot(d, quadrature), atan2(quadrature, d));
-        Ok(Self { amplitude, phase, omega, decay_rate, target: system.target })
-    }
-
-    /// The state at `t` seconds.
-    pub fn at(&self, t: f64) -> State {
-        let envelope = self.amplitude * exp(-self.decay_rate * t);
-        let (sine, cosine) = (sin(self.omega * t + self.phase), cos(self.omega * t + self.phase));
-        State { x: self.target + envelope * cosine, v: -envelope * (self.decay_rate * cosine + self.omega * sine) }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::lab::system::Force;
 
-    fn regimes() -> Vec<(Regime, System)> {
-        [
-            (Regime::Undamped, 50.0, 0.0),
-            (Regime::Underdamped, 50.0, 0.8),
-            (Regime::CriticallyDamped, 16.0, 8.0),
-            (Regime::Overdamped, 16.0, 20.0),
-            (Regime::Unsprung, 0.0, 3.0),
-            (Regime::Unimpeded, 0.0, 0.0),
-        ]
-        .into_iter()
-        .map(|(regime, k, c)| (regime, System::linear(1.0, k, c).unwrap()))
-        .collect()
-    }
-
-    #[test]
-    fn regimes_are_told_apart() {
-        for (regime, system) in regimes() {
-            assert_eq!(Regime::of(&system), regime);
-        }
-    }
+    /// Stiffness and damping in each regime: undamped, under-, critically and over-damped, without a spring, without either.
+    const REGIMES: [[f64; 2]; 6] = [[50.0, 0.0], [50.0, 0.8], [16.0, 8.0], [16.0, 20.0], [0.0, 3.0], [0.0, 0.0]];
 
     /// The motion must satisfy its own equation, `m ẍ + c ẋ + k (x − target) = f(t)`, and begin with the given state.
     #[test]
     fn the_equation_of_motion_holds_in_every_regime_with_and_without_a_force() {
         let start = State { x: 0.4, v: -0.6 };
         let resonance = 50.0_f64.sqrt() / TAU;
-        for (regime, plain) in regimes() {
+        for [k, c] in REGIMES {
+            let plain = System::linear(1.0, k, c).unwrap();
             for (amplitude, frequency) in [(0.0, 0.0), (2.0, 0.0), (2.0, 0.7), (2.0, resonance)] {
                 let force = Force { amplitude, frequency, phase: 0.3 };
                 let system = System { target: 0.1, force, ..plain };
@@ -221,8 +133,8 @@ mod tests {
                     let (h, here) = (1e-4, motion.at(t));
                     let (before, after) = (motion.at(t - h), motion.at(t + h));
                     let (slope, acceleration) = ((after.x - before.x) / (2.0 * h), (after.v - before.v) / (2.0 * h));
-                    assert!((slope - here.v).abs() < 1e-5, "{regime:?}, force {amplitude} at {frequency}");
-                    assert!((acceleration - system.acceleration(here, t)).abs() < 1e-4, "{regime:?} {amplitude}");
+                    assert!((slope - here.v).abs() < 1e-5, "{k}, {c}, force {amplitude} at {frequency}");
+                    assert!((acceleration - system.acceleration(here, t)).abs() < 1e-4, "{k}, {c}, {amplitude}");
                 }
             }
         }
@@ -244,21 +156,6 @@ mod tests {
         check(at(0.0, 0.0), x0 + v0 * t, v0);
         let e = exp(-4.0 * t);
         check(at(16.0, 8.0), e * ((1.0 + 4.0 * t) * x0 + t * v0), e * (-16.0 * t * x0 + (1.0 - 4.0 * t) * v0));
-    }
-
-    #[test]
-    fn amplitude_and_phase_are_the_same_motion() {
-        for damping in [0.0, 0.8] {
-            let system = System { target: -0.2, ..System::linear(2.0, 50.0, damping).unwrap() };
-            let start = State { x: 0.4, v: -0.6 };
-            let (matrix, form) =
-                (ClosedForm::new(&system, start).unwrap(), AmplitudePhase::new(&system, start).unwrap());
-            for n in 0..100 {
-                let (a, b) = (matrix.at(f64::from(n) * 0.05), form.at(f64::from(n) * 0.05));
-                assert!((a.x - b.x).abs() < 1e-13 && (a.v - b.v).abs() < 1e-12);
-            }
-        }
-        assert!(AmplitudePhase::new(&System::linear(1.0, 0.0, 0.0).unwrap(), State::default()).is_err());
     }
 
     #[test]

@@ -8,7 +8,7 @@ use libm::{sin, sqrt};
 
 /// Kinetic and potential energy in J.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Energy {
+pub(crate) struct Energy {
     /// `½ m v²`.
     pub kinetic: f64,
     /// Energy stored in the spring: `½ k d²` for a linear spring.
@@ -17,7 +17,7 @@ pub struct Energy {
 
 impl Energy {
     /// Energy of a state. The force `f(t)` is external, so its work is not included.
-    pub fn of(system: &System, state: State) -> Self {
+    pub(crate) fn of(system: &System, state: State) -> Self {
         let d = state.x - system.target;
         let potential = match system.spring {
             Spring::Linear => 0.5 * system.stiffness * d * d,
@@ -29,7 +29,7 @@ impl Energy {
     }
 
     /// `T + V`: constant if there is no damper and no force.
-    pub fn total(&self) -> f64 {
+    pub(crate) fn total(&self) -> f64 {
         self.kinetic + self.potential
     }
 }

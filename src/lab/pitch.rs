@@ -52,7 +52,7 @@ pub struct Note {
 ///
 /// Every method integrates the spring that has exactly this pitch and decay. Only the seed's coefficients are computed
 /// from the note itself, as a player would: `Initialise(sample_rate, frequency, decay_frames)`.
-pub fn play(method: Method, frequency: f64, t60: f64, sample_rate: f64) -> Result<Note> {
+pub(crate) fn play(method: Method, frequency: f64, t60: f64, sample_rate: f64) -> Result<Note> {
     if !(sample_rate > 0.0 && sample_rate.is_finite()) {
         return Err(Error::value("rate", format!("must be greater than 0 Hz, got {sample_rate}")));
     }

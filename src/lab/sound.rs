@@ -12,14 +12,14 @@ use std::f64::consts::TAU;
 /// Peak of a strike, −6 dBFS, so that it does not clip.
 pub(crate) const STRIKE: f64 = 0.5;
 /// Amplitude to which the limiter reduces a mass that explodes: −1 dBFS.
-pub const CEILING: f64 = 0.891_250_938_133_745_6;
+pub(crate) const CEILING: f64 = 0.891_250_938_133_745_6;
 
 /// A method's sound.
 #[derive(Clone, Debug)]
 pub struct Sound {
     /// The method.
     pub method: Method,
-    /// One sample per frame, within ±[`CEILING`].
+    /// One sample per frame, within ±`CEILING`.
     pub samples: Vec<f32>,
     /// Time in seconds at which the limiter first acted, if it did.
     pub limited: Option<f64>,
@@ -30,11 +30,11 @@ pub struct Sound {
 /// Strikes a spring of `frequency` Hz with a −60 dB time of `t60` seconds, and integrates it with `method` for
 /// `seconds`.
 ///
-/// If the amplitude exceeds [`CEILING`], the limiter scales the whole state back to it. Pitch and waveform do not
+/// If the amplitude exceeds `CEILING`, the limiter scales the whole state back to it. Pitch and waveform do not
 /// change, the level stays constant, and the removed growth is added up in `reduction_db`.
 ///
 /// # Errors
-/// [`Error::Value`] for a note that cannot be played, and for a sound of more than [`MOST_STEPS`] samples.
+/// [`Error::Value`] for a note that cannot be played, and for a sound of more than `MOST_STEPS` samples.
 pub fn listen(method: Method, frequency: f64, t60: f64, seconds: f64, sample_rate: f64) -> Result<Sound> {
     // `play` checks the note: the same notes cannot be played here.
     play(method, frequency, t60, sample_rate)?;

@@ -10,9 +10,9 @@ use crate::error::{Error, Result};
 use libm::{exp, hypot, sqrt};
 
 /// Longest `ω·h` that is tried. A method that is still stable there counts as stable for every step.
-pub const LONGEST: f64 = 100.0;
+pub(crate) const LONGEST: f64 = 100.0;
 /// Shortest `ω·h` that is tried. A method that is unstable there counts as never stable.
-pub const SHORTEST: f64 = 0.01;
+pub(crate) const SHORTEST: f64 = 0.01;
 
 /// One method with one step and one damping ratio.
 #[derive(Clone, Copy, Debug, PartialEq)]

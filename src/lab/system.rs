@@ -15,7 +15,7 @@ pub struct State {
 
 impl State {
     /// Whether both numbers are finite, so that the next step can be computed.
-    pub fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         self.x.is_finite() && self.v.is_finite()
     }
 }
@@ -47,7 +47,7 @@ pub struct Force {
 
 impl Force {
     /// Force in N at `t` seconds.
-    pub fn at(&self, t: f64) -> f64 {
+    pub(crate) fn at(&self, t: f64) -> f64 {
         self.amplitude * cos(TAU * self.frequency * t + self.phase)
     }
 }
@@ -136,7 +136,7 @@ impl System {
     }
 
     /// `λ̄ = c / 2m` in 1/s: the decay rate.
-    pub fn decay_rate(&self) -> f64 {
+    pub(crate) fn decay_rate(&self) -> f64 {
         0.5 * self.damping / self.mass
     }
 

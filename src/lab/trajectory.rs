@@ -6,7 +6,7 @@ use super::system::{State, System};
 use crate::error::{Error, Result};
 
 /// Maximum number of states of one run that are kept in memory: 160 MB together with the true states.
-pub const MOST_STEPS: usize = 5_000_000;
+pub(crate) const MOST_STEPS: usize = 5_000_000;
 
 /// The states of a run at `0, h, 2h, …`, and the true states.
 #[derive(Clone, Debug)]
@@ -27,19 +27,19 @@ pub struct Trajectory {
 
 impl Trajectory {
     /// Time in seconds at which the numbers overflowed, if they did.
-    pub fn overflow(&self) -> Option<f64> {
+    pub(crate) fn overflow(&self) -> Option<f64> {
         (self.states.len() < self.truth.len()).then_some(self.states.len() as f64 * self.h)
     }
 
     /// Differences in position from the true motion, in m.
-    pub fn errors(&self) -> impl Iterator<Item = f64> {
+    pub(crate) fn errors(&self) -> impl Iterator<Item = f64> {
         self.states.iter().zip(&self.truth).map(|(state, truth)| state.x - truth.x)
     }
 }
 
 /// Number of steps of `h` that reach `end`, rounded up. Returns an error if `h` or `end` is not positive, and for more
 /// steps than memory should hold.
-pub fn step_count(h: f64, end: f64) -> Result<usize> {
+pub(crate) fn step_count(h: f64, end: f64) -> Result<usize> {
     if !(h > 0.0 && h.is_finite()) {
         return Err(Error::value("steps", format!("a step must be longer than 0 s, got {h}")));
     }
@@ -59,7 +59,7 @@ pub fn step_count(h: f64, end: f64) -> Result<usize> {
 }
 
 /// The true states for [`run_against`]: at `0, h, …` up to `end` seconds.
-pub fn truth(system: &System, start: State, h: f64, end: f64) -> Result<Vec<State>> {
+pub(crate) fn truth(system: &System, start: State, h: f64, end: f64) -> Result<Vec<State>> {
     if !start.is_finite() {
         return Err(Error::value("start", "position and velocity must be finite numbers"));
     }
@@ -72,7 +72,7 @@ pub fn run(method: Method, system: &System, start: State, h: f64, end: f64) -> R
 }
 
 /// Runs `method` from the first state in `truth`, with as many steps as there are states in `truth`.
-pub fn run_against(method: Method, system: &System, h: f64, truth: Vec<State>) -> Result<Trajectory> {
+pub(crate) fn run_against(method: Method, system: &System, h: f64, truth: Vec<State>) -> Result<Trajectory> {
     let integrator = method.integrator(system, h)?;
     let mut states = Vec::with_capacity(truth.len());
     let mut state = truth.first().copied().unwrap_or_default();

@@ -21,7 +21,7 @@ impl Values {
     }
 
     /// The choice that a parameter is set to. Real-time safe.
-    pub fn choice<T: Choice>(&self, param: Param) -> T {
+    pub(crate) fn choice<T: Choice>(&self, param: Param) -> T {
         debug_assert!(param.info().choices == T::NAMES, "{param:?} has other choices");
         T::from_value(self.get(param))
     }

@@ -19,7 +19,7 @@ pub struct Patch {
 }
 
 impl Default for Patch {
-    /// The preset `init`: every parameter at its default, one mode and [`Routes::INITIAL`]. Allocates.
+    /// The preset `init`: every parameter at its default, one mode and `Routes::INITIAL`. Allocates.
     fn default() -> Self {
         Self { values: Values::default(), modes: ModeTable::new(&[Mode::UNIT]), routes: Routes::INITIAL }
     }

@@ -4,7 +4,6 @@ use crate::dsp::cells::MAX_CELLS;
 use crate::dsp::mode_bank;
 use libm::{log2, round};
 use std::fmt;
-use std::ops::RangeInclusive;
 use std::sync::{Arc, OnceLock};
 
 /// Maximum number of modes of a body.
@@ -116,7 +115,7 @@ impl ModeTable {
     }
 
     /// The logarithm to base 2 of each mode's ratio, so that a strike can compute powers of the ratios quickly.
-    pub fn octaves(&self) -> &[f64] {
+    pub(crate) fn octaves(&self) -> &[f64] {
         &self.octaves
     }
 
@@ -168,7 +167,8 @@ impl ModeTable {
     }
 
     /// The keys that have a table of their own; none if one table is for all keys, or if the tables are not made yet.
-    pub fn keys(&self) -> Option<RangeInclusive<u8>> {
+    #[cfg(test)]
+    pub(crate) fn keys(&self) -> Option<std::ops::RangeInclusive<u8>> {
         let lowest = self.by_key.as_deref()?.lowest;
         let highest = usize::from(lowest) + self.made().len().checked_sub(1)?;
         Some(lowest..=highest.min(127) as u8)

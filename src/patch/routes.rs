@@ -28,7 +28,7 @@ macro_rules! named {
             }
 
             /// The one with this identifier.
-            pub fn from_id(id: &str) -> Option<Self> {
+            pub(crate) fn from_id(id: &str) -> Option<Self> {
                 Self::ALL.iter().copied().find(|one| one.id() == id)
             }
         }
@@ -113,7 +113,7 @@ named! {
 
 impl Response {
     /// Applies the curve to a source value from −1 to 1. Real-time safe.
-    pub fn apply(self, value: f32) -> f32 {
+    pub(crate) fn apply(self, value: f32) -> f32 {
         let magnitude = value.abs();
         match self {
             Response::Linear => value,
@@ -154,7 +154,7 @@ impl Routes {
 
     /// The routes of a new patch, in the last places: the modulation wheel adds vibrato; brightness tilts the levels
     /// and the decay of the modes. Their amounts are the default values of the parameters.
-    pub const INITIAL: Routes = {
+    pub(crate) const INITIAL: Routes = {
         let mut routes = Routes::NONE;
         routes.0[13] = Some(Route::linear(Source::Wheel, Param::Vibrato));
         routes.0[14] = Some(Route::linear(Source::Timbre, Param::Tilt));

@@ -13,7 +13,7 @@ impl Preset {
     /// Reads a preset. `origin` names the text in errors: a path, or another source.
     ///
     /// # Errors
-    /// [`Error::Format`] if it is not a preset of the format [`FORMAT_VERSION`](super::FORMAT_VERSION), a key is
+    /// [`Error::Format`] if it is not a preset of the format `FORMAT_VERSION`, a key is
     /// unknown, or a value is out of range. The error names the key and what would be right.
     pub fn parse(text: &str, origin: &str) -> Result<Self> {
         let mut complaints = Complaints::default();
@@ -52,7 +52,7 @@ impl Preset {
     ///
     /// # Errors
     /// As [`Preset::load`].
-    pub fn read(reader: impl Read, origin: &str) -> Result<Self> {
+    pub(crate) fn read(reader: impl Read, origin: &str) -> Result<Self> {
         Self::parse(&text(reader, origin)?, origin)
     }
 }

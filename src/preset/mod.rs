@@ -38,7 +38,7 @@ pub use programs::Programs;
 pub use tuning::OwnTuning;
 
 /// The preset format version that is read and written.
-pub const FORMAT_VERSION: i64 = 1;
+pub(crate) const FORMAT_VERSION: i64 = 1;
 
 /// A patch with name, author, tags and comment.
 #[derive(Clone, Debug, PartialEq)]

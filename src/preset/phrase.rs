@@ -40,7 +40,7 @@ pub struct PhraseNote {
 
 impl Phrase {
     /// Length of a step in seconds.
-    pub const STEP: f64 = 1.0 / 3.0;
+    pub(crate) const STEP: f64 = 1.0 / 3.0;
 
     /// The notes, in order of their starts.
     pub fn notes(&self) -> Vec<PhraseNote> {

@@ -60,7 +60,7 @@ impl Programs {
     ///
     /// # Errors
     /// [`Error::Format`] naming the place and what would be right.
-    pub fn parse(text: &str, origin: &str) -> Result<Self> {
+    pub(crate) fn parse(text: &str, origin: &str) -> Result<Self> {
         let mut complaints = Complaints::default();
         let programs =
             read(&table(text, origin)?, &mut complaints).map_err(|message| Error::format(origin, message))?;
@@ -91,7 +91,7 @@ impl Programs {
 
 impl Programs {
     /// The name of the sound of a program: first the melodic ones, and from 128 on the drum kits.
-    pub fn name_of(&self, number: u8) -> Option<&str> {
+    pub(crate) fn name_of(&self, number: u8) -> Option<&str> {
         self.any(number).map(|program| &*program.sound)
     }
 
@@ -108,7 +108,7 @@ impl Programs {
     ///
     /// # Errors
     /// Those of `load`.
-    pub fn kits(
+    pub(crate) fn kits(
         &self,
         wanted: impl Fn(u8) -> bool,
         mut load: impl FnMut(&str) -> Result<Arc<Kit>>,

@@ -75,7 +75,7 @@ impl Found {
     }
 
     /// The sample rates to offer for this device, in Hz.
-    pub fn rates(&self) -> &[u32] {
+    pub(crate) fn rates(&self) -> &[u32] {
         &self.rates
     }
 

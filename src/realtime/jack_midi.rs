@@ -16,7 +16,7 @@ const SCAN: Duration = Duration::from_secs(1);
 /// How long a client may take to end.
 const END: Duration = Duration::from_secs(2);
 
-/// A MIDI input port in the JACK graph. [`JackMidi::poll`] must be called regularly.
+/// A MIDI input port in the JACK graph. `JackMidi::poll` must be called regularly.
 pub struct JackMidi {
     wanted: Option<Wanted>,
     client: Option<AsyncClient<Notifications, Process>>,
@@ -69,7 +69,7 @@ impl Drop for Process {
 
 impl JackMidi {
     /// Nothing is opened yet. The user can still connect ports that are not `wanted`.
-    pub fn new(wanted: Option<Wanted>, sender: LiveSender) -> Self {
+    pub(crate) fn new(wanted: Option<Wanted>, sender: LiveSender) -> Self {
         Self {
             wanted,
             client: None,
@@ -92,7 +92,7 @@ impl JackMidi {
     }
 
     /// Opens the port if there is a server, and connects the wanted ports. Returns messages for the user.
-    pub fn poll(&mut self) -> Vec<String> {
+    pub(crate) fn poll(&mut self) -> Vec<String> {
         if self.gone.swap(false, Ordering::AcqRel)
             && let Some(client) = self.client.take()
         {

@@ -36,7 +36,7 @@ struct Connected {
     _connection: MidiInputConnection<()>,
 }
 
-/// Connections to MIDI ports. [`MidiPorts::poll`] must be called regularly.
+/// Connections to MIDI ports. `MidiPorts::poll` must be called regularly.
 pub struct MidiPorts {
     wanted: Wanted,
     /// Shared by the ports' threads, none of which is the audio thread.
@@ -51,7 +51,7 @@ pub struct MidiPorts {
 
 impl MidiPorts {
     /// Makes no connections yet.
-    pub fn new(wanted: Wanted, sender: LiveSender) -> Self {
+    pub(crate) fn new(wanted: Wanted, sender: LiveSender) -> Self {
         Self {
             wanted,
             sender: Arc::new(Mutex::new(sender)),
@@ -60,11 +60,6 @@ impl MidiPorts {
             is_releasing: false,
             problem: None,
         }
-    }
-
-    /// Names of the connected ports.
-    pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.connected.iter().map(|connected| connected.name.as_str())
     }
 
     /// Ends the connections, releases the held keys, and returns the sender.
@@ -77,7 +72,7 @@ impl MidiPorts {
     }
 
     /// Connects new ports and drops those that have disappeared. Returns messages for the user.
-    pub fn poll(&mut self) -> Vec<String> {
+    pub(crate) fn poll(&mut self) -> Vec<String> {
         if Instant::now() < self.scan_at {
             return vec![];
         }

@@ -57,7 +57,6 @@ impl KitSender {
 /// Plays on the audio thread. [`Source::fill`] is real-time safe: it never allocates, locks or fails.
 pub struct Player {
     ensemble: Ensemble,
-    sample_rate: f64,
     programs: usize,
     song: Option<SongCursor<Song>>,
     inputs: LiveInputs,
@@ -97,7 +96,6 @@ impl Player {
         ensemble.set_tuning(setup.tuning);
         let player = Self {
             ensemble,
-            sample_rate,
             programs: setup.programs.len(),
             song,
             events: Vec::with_capacity(densest + inputs.capacity()),
@@ -115,11 +113,6 @@ impl Player {
             _collector: collector.clone(),
         };
         (player, KitSender { queue, collector })
-    }
-
-    /// Frames per second.
-    pub fn sample_rate(&self) -> u32 {
-        self.sample_rate as u32
     }
 
     /// Renders a piece of a block that begins `start` frames after the start of the block.

@@ -28,7 +28,7 @@ pub struct Name {
 
 impl Name {
     /// The option of this name.
-    pub fn find(name: &str) -> Option<&'static Self> {
+    pub(crate) fn find(name: &str) -> Option<&'static Self> {
         NAMES.iter().find(|known| known.name == name)
     }
 }

@@ -9,7 +9,7 @@ use crate::units::{split_quantity, with_decimal_point};
 use std::ops::RangeInclusive;
 
 /// Maximum length of notes and tails, in seconds.
-pub const LONGEST: f64 = 86_400.0;
+pub(crate) const LONGEST: f64 = 86_400.0;
 
 fn in_range(value: f64, range: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
     if range.contains(&value) {

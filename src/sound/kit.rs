@@ -101,16 +101,16 @@ impl Kit {
     }
 
     /// A kit of one sound, which every key plays at its own pitch. Allocates.
-    pub fn of(sound: Arc<Sound>) -> Arc<Self> {
+    pub(crate) fn of(sound: Arc<Sound>) -> Arc<Self> {
         Self::single(String::new(), sound)
     }
 
-    /// As [`Kit::of`], with the sound of a patch. Allocates.
+    /// A kit of the sound of a patch, which every key plays at its own pitch. Allocates.
     pub fn of_patch(patch: &Patch) -> Arc<Self> {
         Self::of(Arc::new(Sound::new(patch.clone())))
     }
 
-    /// As [`Kit::of`], with a name. Allocates.
+    /// A kit of one sound with a name, which every key plays at its own pitch. Allocates.
     pub fn single(name: String, sound: Arc<Sound>) -> Arc<Self> {
         Arc::new(Self::new(name, vec![sound], vec![Some(Pad::of(0)); KEYS]))
     }

@@ -5,6 +5,9 @@ mod batches;
 mod batches_at_scale;
 #[cfg(unix)]
 mod completion;
+#[allow(dead_code, reason = "the engine's tests use more of it")]
+#[path = "../engine/damped_sine.rs"]
+mod damped_sine;
 mod fits;
 mod inputs;
 #[cfg(unix)]

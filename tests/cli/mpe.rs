@@ -1,8 +1,8 @@
 //! An MPE performance from a MIDI file, rendered by the command: every note follows the bends of its own channel.
 
+use crate::damped_sine::fit;
 use midly::num::{u4, u7, u14, u15, u24, u28};
 use midly::{Format, Header, MetaMessage, MidiMessage, PitchBend, Smf, Timing, TrackEvent, TrackEventKind};
-use sprung::analysis::damped_sine::fit;
 use sprung::dsp::CONTROL_FRAMES;
 use sprung::units::frequency_from_key;
 use std::path::Path;

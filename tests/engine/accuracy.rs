@@ -1,6 +1,6 @@
 //! The rendered frequency and T60 of a single mass are the requested ones, measured on rendered audio.
 
-use sprung::analysis::damped_sine::{DampedSine, fit_unknown};
+use crate::damped_sine::{DampedSine, fit_unknown};
 use sprung::io::{Inputs, Output, SampleFormat, Song, Target};
 use sprung::params::Param;
 use sprung::patch::Patch;

@@ -1,14 +1,11 @@
 //! The engine through its public interface: any event, any time, any sample rate.
 
+use crate::events::event;
 use sprung::engine::{Ensemble, Event, EventKind, Expression, NoteId, Notes, Synth};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
-
-fn event(frame: u32, kind: EventKind) -> Event {
-    Event { frame, channel: 0, kind }
-}
 
 fn render(patch: &Patch, events: &[Event], frames: usize) -> (Vec<f32>, Vec<f32>) {
     let mut synth = Synth::new(48_000.0, 1);

@@ -1,43 +1,24 @@
 //! Compares joined bodies with a dense eigenproblem solved by SciPy, made by `coupled/scipy_reference.py`.
 
-use sprung::dsp::random;
+use sprung::dsp::random::Sequence;
 use sprung::sound::coupled::{BodyMode, CoupledMode, Joint, joined};
 use std::collections::BTreeMap;
 
 const NUMBERS: &str = include_str!("coupled/scipy_reference.csv");
 
-/// A seed, and how many of its numbers were drawn: those of SplitMix64, as in the script.
-struct Chance(u64, u64);
-
-impl Chance {
-    fn bits(&mut self) -> u64 {
-        self.1 += 1;
-        random::bits(self.0, self.1)
-    }
-
-    fn real(&mut self) -> f64 {
-        self.1 += 1;
-        random::unit(self.0, self.1)
-    }
-
-    fn below(&mut self, bound: u64) -> u64 {
-        self.bits() % bound
-    }
-}
-
-/// The bodies and the joint of a case, created in the same order as by `pair` in the script.
+/// The bodies and the joint of a case, created in the same order and from the same numbers as by `pair` in the script.
 fn pair(case: u64) -> ([Vec<BodyMode>; 2], Joint) {
-    let mut chance = Chance(case, 0);
+    let mut chance = Sequence::new(case);
     let mut size = || {
         let bound = 1 + chance.below(64);
         1 + chance.below(bound)
     };
     let sizes = if case.is_multiple_of(20) { [128, 128] } else { [size(), size()] };
-    let loss = [0.0, 1.0, 30.0, 400.0][chance.below(4) as usize];
+    let loss = [0.0, 1.0, 30.0, 400.0][chance.below(4)];
     let mut bodies = sizes.map(|size| {
         let mode = |_| {
-            let (u, v) = (chance.real(), chance.real());
-            let [joint, strike, pickup] = [(); 3].map(|()| 2.0 * chance.real() - 1.0);
+            let (u, v) = (chance.unit(), chance.unit());
+            let [joint, strike, pickup] = [(); 3].map(|()| 2.0 * chance.unit() - 1.0);
             let (angular_frequency, decay_rate) = (300.0 + 60000.0 * u * u, loss * (0.1 + v));
             BodyMode { angular_frequency, decay_rate, joint, strike, pickup }
         };
@@ -47,15 +28,15 @@ fn pair(case: u64) -> ([Vec<BodyMode>; 2], Joint) {
     let [first, second] = &mut bodies;
     for (first, second) in first.iter().zip(second) {
         if kind != 0 && chance.below(2) == 0 {
-            let near = [0.0, 1e-2, 1e-4, 1e-6, 0.0][kind] * chance.real();
+            let near = [0.0, 1e-2, 1e-4, 1e-6, 0.0][kind] * chance.unit();
             second.angular_frequency = first.angular_frequency * (1.0 + near);
             if kind == 4 {
                 second.decay_rate = first.decay_rate;
             }
         }
     }
-    let stiffness = chance.real() * (1_u64 << (8 + chance.below(26))) as f64;
-    let damping = [0.0, chance.real() * (1_u64 << chance.below(8)) as f64][chance.below(2) as usize];
+    let stiffness = chance.unit() * (1_u64 << (8 + chance.below(26))) as f64;
+    let damping = [0.0, chance.unit() * (1_u64 << chance.below(8)) as f64][chance.below(2)];
     let rigid = chance.below(8) == 0;
     (bodies, if rigid { Joint::Rigid } else { Joint::Spring { stiffness, damping } })
 }

@@ -1,15 +1,20 @@
 //! Events on the first channel, in a short form for tests.
 
-use sprung::engine::{Event, EventKind};
+use sprung::engine::{Event, EventKind, NoteId};
 
 pub(crate) fn event(frame: u32, kind: EventKind) -> Event {
     Event { frame, channel: 0, kind }
 }
 
 pub(crate) fn on(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None })
+    Event::note_on(frame, key, 1.0)
 }
 
 pub(crate) fn off(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: None })
+    Event::note_off(frame, key)
+}
+
+/// With a host's identifier; none if `id` is negative.
+pub(crate) fn on_with_id(frame: u32, channel: u8, key: u8, id: i32) -> Event {
+    Event { frame, channel, kind: EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: NoteId::new(id) } }
 }

@@ -1,5 +1,6 @@
 //! What plugin hosts and MPE controllers need from the engine: expressions, modulation, ended notes, tails.
 
+use crate::events::{event, on_with_id as on};
 use proptest::prelude::*;
 use sprung::dsp::CONTROL_FRAMES;
 use sprung::engine::{Event, EventKind, Expression, NoteId, Notes, Synth};
@@ -9,14 +10,6 @@ use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
 
 const RATE: usize = 48_000;
-
-fn event(frame: u32, kind: EventKind) -> Event {
-    Event { frame, channel: 0, kind }
-}
-
-fn on(frame: u32, channel: u8, key: u8, id: i32) -> Event {
-    Event { frame, channel, kind: EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: NoteId::new(id) } }
-}
 
 fn express(frame: u32, id: i32, expression: Expression, value: f32) -> Event {
     let notes = Notes { id: NoteId::new(id), ..Notes::default() };

@@ -1,7 +1,7 @@
 //! Tension, bloom and touch: pitch and spectrum that follow the energy, and a finger that damps modes by their shapes.
 
+use crate::damped_sine::fit;
 use crate::events::{event, on};
-use sprung::analysis::damped_sine::fit;
 use sprung::analysis::spectrum::spectrum;
 use sprung::dsp::CONTROL_FRAMES;
 use sprung::engine::{Event, EventKind, Synth};

@@ -1,5 +1,6 @@
 //! Kits: keys that play sounds of their own, choke each other, and are replaced while they ring.
 
+use crate::events::event;
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
 use sprung::error::Error;
 use sprung::params::{PARAMS, Param};
@@ -12,10 +13,6 @@ use std::path::Path;
 use std::sync::Arc;
 
 const RATE: f64 = 48_000.0;
-
-fn event(frame: u32, kind: EventKind) -> Event {
-    Event { frame, channel: 0, kind }
-}
 
 type Sides = [Vec<u32>; 2];
 

@@ -10,6 +10,7 @@ mod body_reference;
 mod body_rendered;
 mod clicks;
 mod coupled_reference;
+mod damped_sine;
 mod events;
 mod exciters;
 mod host_events;

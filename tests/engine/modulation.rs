@@ -1,23 +1,12 @@
 //! Audible effects of routes on a note: every source, and every kind of destination.
 
+use crate::events::{event, off};
 use sprung::engine::{Event, EventKind, Expression, NoteId, Notes, Synth};
 use sprung::params::{PARAMS, Param, Param::*};
 use sprung::patch::routes::{Response, Route, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
 
 const RATE: f64 = 48_000.0;
-
-fn event(frame: u32, kind: EventKind) -> Event {
-    Event { frame, channel: 0, kind }
-}
-
-fn on(frame: u32, key: u8, velocity: f32) -> Event {
-    Event::note_on(frame, key, velocity)
-}
-
-fn off(frame: u32, key: u8) -> Event {
-    Event::note_off(frame, key)
-}
 
 fn control(frame: u32, controller: u8, value: f32) -> Event {
     event(frame, EventKind::Control { controller, value })
@@ -83,21 +72,25 @@ fn sources_of_the_strike_and_the_hand_move_a_gain() {
     let key_pressure = event(9600, EventKind::PolyPressure { key: 60, pressure: 0.5 });
     let timbre = EventKind::Express { notes: Notes::default(), expression: Expression::Brightness, value: 0.25 };
     for (source, events, expected) in [
-        (Source::Velocity, vec![on(0, 60, 0.5)], 6.0),
-        (Source::ReleaseVelocity, vec![on(0, 60, 1.0), off(2400, 60)], 6.0),
-        (Source::Key, vec![on(0, 90, 1.0)], 6.0),
-        (Source::Key, vec![on(0, 30, 1.0)], -6.0),
-        (Source::Alternation, vec![on(0, 60, 1.0)], 12.0),
-        (Source::Alternation, vec![on(0, 60, 1.0), on(4800, 60, 1.0)], -12.0),
-        (Source::Pressure, vec![on(0, 60, 1.0), pressure], 6.0),
-        (Source::Pressure, vec![on(0, 60, 1.0), key_pressure], 6.0),
-        (Source::Timbre, vec![on(0, 60, 1.0), event(9600, timbre)], -6.0),
-        (Source::Bend, vec![on(0, 60, 1.0), event(9600, EventKind::PitchBend(-1.0))], -12.0),
-        (Source::Wheel, vec![on(0, 60, 1.0), control(9600, 1, 1.0)], 12.0),
-        (Source::Breath, vec![on(0, 60, 1.0), control(9600, 2, 0.5)], 6.0),
-        (Source::Expression, vec![on(0, 60, 1.0), control(9600, 11, 0.5)], 6.0),
-        (Source::Macro3, vec![on(0, 60, 1.0), event(9600, EventKind::Param { param: Macro3, value: 25.0 })], 3.0),
-        (Source::Envelope1, vec![on(0, 60, 1.0)], 6.0),
+        (Source::Velocity, vec![Event::note_on(0, 60, 0.5)], 6.0),
+        (Source::ReleaseVelocity, vec![Event::note_on(0, 60, 1.0), off(2400, 60)], 6.0),
+        (Source::Key, vec![Event::note_on(0, 90, 1.0)], 6.0),
+        (Source::Key, vec![Event::note_on(0, 30, 1.0)], -6.0),
+        (Source::Alternation, vec![Event::note_on(0, 60, 1.0)], 12.0),
+        (Source::Alternation, vec![Event::note_on(0, 60, 1.0), Event::note_on(4800, 60, 1.0)], -12.0),
+        (Source::Pressure, vec![Event::note_on(0, 60, 1.0), pressure], 6.0),
+        (Source::Pressure, vec![Event::note_on(0, 60, 1.0), key_pressure], 6.0),
+        (Source::Timbre, vec![Event::note_on(0, 60, 1.0), event(9600, timbre)], -6.0),
+        (Source::Bend, vec![Event::note_on(0, 60, 1.0), event(9600, EventKind::PitchBend(-1.0))], -12.0),
+        (Source::Wheel, vec![Event::note_on(0, 60, 1.0), control(9600, 1, 1.0)], 12.0),
+        (Source::Breath, vec![Event::note_on(0, 60, 1.0), control(9600, 2, 0.5)], 6.0),
+        (Source::Expression, vec![Event::note_on(0, 60, 1.0), control(9600, 11, 0.5)], 6.0),
+        (
+            Source::Macro3,
+            vec![Event::note_on(0, 60, 1.0), event(9600, EventKind::Param { param: Macro3, value: 25.0 })],
+            3.0,
+        ),
+        (Source::Envelope1, vec![Event::note_on(0, 60, 1.0)], 6.0),
     ] {
         // The vibrato from wheel and pressure changes no level, so peaks can be compared.
         assert_moves_gain(source, &events, expected);
@@ -109,7 +102,7 @@ fn an_oscillator_at_the_vibrato_s_rate_and_depth_is_a_vibrato() {
     let vibrato = patch(&[]).with(Vibrato, 96.0).with(VibratoRate, 6.0);
     // 96 cents are 1 % of the range of `tune`.
     let routed = patch(&[(Source::Lfo1, Tune, 1.0)]).with(Lfo1Rate, 6.0);
-    let events = [on(100, 69, 1.0)];
+    let events = [Event::note_on(100, 69, 1.0)];
     let (expected, found) = (render(&vibrato, 0, &events, 48_000), render(&routed, 0, &events, 48_000));
     let worst = expected.iter().zip(&found).fold(0.0f32, |worst, (a, b)| worst.max((a - b).abs()));
     assert!(worst < 2e-3, "{worst}");
@@ -119,13 +112,17 @@ fn an_oscillator_at_the_vibrato_s_rate_and_depth_is_a_vibrato() {
 fn a_tempo_sets_the_rate_and_a_fade_lets_it_begin_slowly() {
     // A square wave with a period of one beat: up for half a beat, then down.
     let square = patch(&[(Source::Lfo2, Tune, 10.0)]).with(Lfo2Sync, 4.0).with(Lfo2Shape, 3.0);
-    let sound = render(&square, 0, &[event(0, EventKind::Tempo(60.0)), on(0, 69, 1.0)], 96_000);
+    let sound = render(&square, 0, &[event(0, EventKind::Tempo(60.0)), Event::note_on(0, 69, 1.0)], 96_000);
     let (up, down) = (440.0 * libm::exp2(9.6 / 12.0), 440.0 * libm::exp2(-9.6 / 12.0));
     for (seconds, expected) in [(0.1, up), (0.6, down), (1.1, up), (1.6, down)] {
         assert_near(frequency(&sound, seconds), expected, 1e-4);
     }
-    let sound =
-        render(&square.with(Lfo2Fade, 1.0).with(Lfo2Sync, 0.0).with(Lfo2Rate, 0.01), 0, &[on(0, 69, 1.0)], 96_000);
+    let sound = render(
+        &square.with(Lfo2Fade, 1.0).with(Lfo2Sync, 0.0).with(Lfo2Rate, 0.01),
+        0,
+        &[Event::note_on(0, 69, 1.0)],
+        96_000,
+    );
     assert_near(frequency(&sound, 0.45), 440.0 * libm::exp2(4.8 / 12.0), 2e-3);
     assert_near(frequency(&sound, 1.5), up, 1e-4);
 }
@@ -139,7 +136,7 @@ fn an_envelope_follows_the_key() {
         .with(Envelope2Decay, 0.001)
         .with(Envelope2Sustain, 50.0)
         .with(Envelope2Release, 0.001);
-    let sound = render(&envelope, 0, &[on(0, 57, 1.0), off(38_400, 57)], 58_000);
+    let sound = render(&envelope, 0, &[Event::note_on(0, 57, 1.0), off(38_400, 57)], 58_000);
     for (seconds, semitones) in [(0.05, 0.0), (0.25, 12.0), (0.5, 6.0), (0.9, 0.0)] {
         assert_near(frequency(&sound, seconds), 220.0 * libm::exp2(semitones / 12.0), 1e-4);
     }
@@ -151,23 +148,27 @@ fn what_a_strike_reads_is_moved_by_what_it_knows() {
     let routed = patch(&[(Source::Velocity, Sweep, 12.5)]).with(SweepTime, 0.2);
     for velocity in [0.25, 1.0] {
         let plain = patch(&[]).with(SweepTime, 0.2).with(Sweep, 15.0 * velocity);
-        let events = [on(0, 60, velocity)];
+        let events = [Event::note_on(0, 60, velocity)];
         assert!(render(&routed, 0, &events, 9600) == render(&plain, 0, &events, 9600), "{velocity}");
     }
     // The same for the times of the modulators.
     let envelope = |amount| patch(&[(Source::Velocity, Envelope1Hold, amount), (Source::Envelope1, Tune, 12.5)]);
     let plain = envelope(0.0).with(Envelope1Hold, 5.0);
-    assert!(render(&envelope(50.0), 0, &[on(0, 60, 1.0)], 48_000) == render(&plain, 0, &[on(0, 60, 1.0)], 48_000));
+    assert!(
+        render(&envelope(50.0), 0, &[Event::note_on(0, 60, 1.0)], 48_000)
+            == render(&plain, 0, &[Event::note_on(0, 60, 1.0)], 48_000)
+    );
 }
 
 #[test]
 fn random_strikes_differ_and_repeat_with_the_seed() {
     let random =
         patch(&[(Source::Random, Tune, 10.0), (Source::Lfo3, Gain, 20.0)]).with(Lfo3Shape, 4.0).with(Lfo3Rate, 40.0);
-    let events = [on(0, 60, 1.0)];
+    let events = [Event::note_on(0, 60, 1.0)];
     let sound = |seed| render(&random, seed, &events, 9600);
     assert!(sound(1) == sound(1) && sound(1) != sound(2));
-    let twice = render(&random, 1, &[on(0, 60, 1.0), off(100, 60), on(24_000, 72, 1.0)], 48_000);
+    let twice =
+        render(&random, 1, &[Event::note_on(0, 60, 1.0), off(100, 60), Event::note_on(24_000, 72, 1.0)], 48_000);
     assert!(libm::log2(frequency(&twice, 0.1) / 261.63).abs() > 1e-4, "it is moved");
 }
 
@@ -176,7 +177,7 @@ fn routes_scale_each_other() {
     let mut by_wheel = patch(&[(Source::Macro1, Tune, 12.5), (Source::Wheel, Route1, -50.0)]);
     let pitch = |patch: &Patch, wheel| {
         let full = event(0, EventKind::Param { param: Macro1, value: 100.0 });
-        let sound = render(patch, 0, &[full, control(0, 1, wheel), on(0, 57, 1.0)], 20_000);
+        let sound = render(patch, 0, &[full, control(0, 1, wheel), Event::note_on(0, 57, 1.0)], 20_000);
         12.0 * libm::log2(frequency(&sound, 0.2) / 220.0)
     };
     // Vibrato from the wheel would disturb the measurement.
@@ -196,8 +197,13 @@ fn a_shared_oscillator_is_the_same_for_all_notes() {
     let one = patch(&[(Source::Lfo1, Tune, 5.0)]).with(Lfo1Rate, 1.0).with(Lfo1Shape, 2.0);
     for (scope, same) in [(1.0, true), (0.0, false)] {
         let patch = one.clone().with(Lfo1Scope, scope);
-        let late = render(&patch.clone().with(Voices, 1.0), 0, &[on(0, 45, 1.0), on(14_400, 57, 1.0)], 48_000);
-        let early = render(&patch, 0, &[on(0, 57, 1.0)], 48_000);
+        let late = render(
+            &patch.clone().with(Voices, 1.0),
+            0,
+            &[Event::note_on(0, 45, 1.0), Event::note_on(14_400, 57, 1.0)],
+            48_000,
+        );
+        let early = render(&patch, 0, &[Event::note_on(0, 57, 1.0)], 48_000);
         let ratio = frequency(&late, 0.6) / frequency(&early, 0.6);
         // The pitch rises by 10 semitones per second, so within 100 ms the zero crossings depend slightly on the phase.
         assert_eq!((ratio - 1.0).abs() < 4e-3, same, "{ratio}");
@@ -211,15 +217,15 @@ fn a_note_keeps_its_routes_when_the_patch_changes() {
     synth.set_patch(&vibrato);
     let mut sound = [vec![0.0; 48_000], vec![0.0; 48_000]];
     let [left, right] = &mut sound;
-    synth.process(&[on(0, 69, 1.0)], &mut left[..4800], &mut right[..4800]);
+    synth.process(&[Event::note_on(0, 69, 1.0)], &mut left[..4800], &mut right[..4800]);
     synth.set_patch(&patch(&[(Source::Macro1, Tune, 50.0)]).with(Macro1, 100.0));
     synth.process(&[], &mut left[4800..], &mut right[4800..]);
-    assert!(sound[0] == render(&vibrato, 0, &[on(0, 69, 1.0)], 48_000));
+    assert!(sound[0] == render(&vibrato, 0, &[Event::note_on(0, 69, 1.0)], 48_000));
 }
 
 #[test]
 fn a_route_without_amount_changes_nothing() {
-    let events = [on(0, 60, 0.8), on(2000, 64, 0.3), off(9000, 60)];
+    let events = [Event::note_on(0, 60, 0.8), Event::note_on(2000, 64, 0.3), off(9000, 60)];
     let idle = patch(&[(Source::Lfo1, Tune, 0.0), (Source::Velocity, Decay, 0.0), (Source::Envelope1, Gain, 0.0)]);
     assert!(render(&idle, 0, &events, 24_000) == render(&patch(&[]), 0, &events, 24_000));
 }
@@ -228,24 +234,30 @@ fn a_route_without_amount_changes_nothing() {
 fn a_synchronised_oscillator_keeps_the_tempo_whatever_routes_lead_to_its_rate() {
     let plain = patch(&[(Source::Lfo1, Tune, 2.0)]).with(Lfo1Sync, 4.0);
     let routed = patch(&[(Source::Lfo1, Tune, 2.0), (Source::Velocity, Lfo1Rate, 20.0)]).with(Lfo1Sync, 4.0);
-    assert!(render(&plain, 0, &[on(0, 60, 1.0)], 24_000) == render(&routed, 0, &[on(0, 60, 1.0)], 24_000));
+    assert!(
+        render(&plain, 0, &[Event::note_on(0, 60, 1.0)], 24_000)
+            == render(&routed, 0, &[Event::note_on(0, 60, 1.0)], 24_000)
+    );
     let (faster, plain) = (routed.with(Lfo1Sync, 0.0), plain.with(Lfo1Sync, 0.0));
-    assert!(render(&plain, 0, &[on(0, 60, 1.0)], 24_000) != render(&faster, 0, &[on(0, 60, 1.0)], 24_000));
+    assert!(
+        render(&plain, 0, &[Event::note_on(0, 60, 1.0)], 24_000)
+            != render(&faster, 0, &[Event::note_on(0, 60, 1.0)], 24_000)
+    );
 }
 
 #[test]
 fn a_macro_that_moves_while_the_last_note_ends_has_arrived_at_the_next() {
     let routed = patch(&[(Source::Macro1, Tune, 12.5)]).with(Decay, 0.005);
     let full = |frame| event(frame, EventKind::Param { param: Macro1, value: 100.0 });
-    let late = render(&routed, 0, &[on(0, 57, 1.0), full(1000), on(48_000, 57, 1.0)], 60_000);
-    let early = render(&routed, 0, &[full(0), on(48_000, 57, 1.0)], 60_000);
+    let late = render(&routed, 0, &[Event::note_on(0, 57, 1.0), full(1000), Event::note_on(48_000, 57, 1.0)], 60_000);
+    let early = render(&routed, 0, &[full(0), Event::note_on(48_000, 57, 1.0)], 60_000);
     assert!(late[48_000..].iter().any(|sample| sample.abs() > 0.01) && late[48_000..] == early[48_000..]);
 }
 
 #[test]
 fn a_level_starts_where_its_modulation_starts() {
     let swell = patch(&[(Source::Envelope1, Gain, 100.0)]).with(Gain, -60.0).with(Envelope1Attack, 0.5);
-    let sound = render(&swell, 0, &[on(0, 90, 1.0)], 24_000);
+    let sound = render(&swell, 0, &[Event::note_on(0, 90, 1.0)], 24_000);
     let largest =
         |range: std::ops::Range<usize>| sound[range].iter().fold(0.0, |most: f32, sample| most.max(sample.abs()));
     assert!(largest(0..32) < 2e-3 && largest(20_000..24_000) > 0.3, "{} {}", largest(0..32), largest(20_000..24_000));
@@ -255,8 +267,8 @@ fn a_level_starts_where_its_modulation_starts() {
 fn a_decay_that_moves_only_in_the_first_tick_stays_there() {
     // From a T60 of about 7 s to one of 30 ms, shortly after the strike and before it.
     let falls = patch(&[(Source::Lfo1, Decay, 30.0)]).with(Decay, 0.5).with(Lfo1Shape, 3.0).with(Lfo1Rate, 0.1);
-    let [late, early] =
-        [49.999, 50.001].map(|phase| render(&falls.clone().with(Lfo1Phase, phase), 0, &[on(0, 60, 1.0)], 24_000));
+    let [late, early] = [49.999, 50.001]
+        .map(|phase| render(&falls.clone().with(Lfo1Phase, phase), 0, &[Event::note_on(0, 60, 1.0)], 24_000));
     assert!(peak(&early, 0.0) > 0.1 && peak(&early, 0.1) < 1e-3, "{}", peak(&early, 0.1));
     assert!(peak(&late, 0.1) < 1e-3, "{}", peak(&late, 0.1));
 }
@@ -265,7 +277,7 @@ fn a_decay_that_moves_only_in_the_first_tick_stays_there() {
 fn a_brightness_does_not_read_a_strike_again() {
     // The envelope is 0 at the strike; its later movement does not change values that were read at the strike.
     let routed = patch(&[(Source::Envelope1, Tilt, 50.0)]).with(Envelope1Attack, 0.1);
-    let events = [on(0, 60, 1.0), control(12_000, 74, 0.2)];
+    let events = [Event::note_on(0, 60, 1.0), control(12_000, 74, 0.2)];
     assert!(render(&routed, 0, &events, 24_000) == render(&patch(&[]), 0, &events, 24_000));
 }
 
@@ -351,7 +363,7 @@ fn busy(form: usize) -> Patch {
 #[test]
 fn every_quantity_can_be_moved_and_is_heard() {
     let events = [
-        on(0, 64, 0.6),
+        Event::note_on(0, 64, 0.6),
         control(4000, 1, 0.5),
         event(4000, EventKind::ChannelPressure(0.4)),
         event(4000, EventKind::PitchBend(0.5)),

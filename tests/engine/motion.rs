@@ -2,15 +2,13 @@
 //!
 //! One mass is measured on rendered audio before it bends, glides or vibrates, and after it has returned.
 
-use sprung::analysis::damped_sine::{DampedSine, fit};
+use crate::damped_sine::{DampedSine, LN_60_DB, fit};
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::units::{key_from_frequency, ratio_from_semitones};
 use std::f64::consts::TAU;
 
-/// ln 1000: −60 dB as an exponent.
-const LN_60_DB: f64 = 6.907_755_278_982_137;
 /// Frames of a control tick: pitch bends are sent as often as the engine reads the pitch.
 const TICK: usize = 32;
 const RATES: [f64; 5] = [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0];

@@ -1,15 +1,12 @@
 //! Unison voices and glides, compared with single notes that have the same tuning.
 
+use crate::events::on;
 use sprung::engine::{Event, EventKind, Snapshot, Synth};
 use sprung::params::Param;
 use sprung::patch::Patch;
 
 const RATE: f64 = 48_000.0;
 const FRAMES: usize = 48_000;
-
-fn on(frame: u32, key: u8) -> Event {
-    Event::note_on(frame, key, 1.0)
-}
 
 fn synth(patch: &Patch) -> Synth {
     let mut synth = Synth::new(RATE, 3);

@@ -6,6 +6,7 @@
 
 use super::draft::Partial;
 use super::movement::{Sweep, speed};
+use crate::analysis::line::Line;
 use crate::analysis::log_mel::{BANDS, LogMel, RATE, SPAN_DB, centre, time};
 use crate::dsp::random::{key, uniform};
 use libm::{log10, pow, sqrt};
@@ -15,6 +16,9 @@ use realfft::RealFftPlanner;
 const EXCESS_DB: f64 = 1.5;
 /// Shortest and longest T60 of the bed in seconds.
 const T60: (f64, f64) = (0.01, 20.0);
+/// Fewest windows whose decay is measured, and T60 in seconds of a band that is heard in fewer of them.
+const FEWEST_WINDOWS: usize = 4;
+const BRIEF_T60: f64 = 0.03;
 /// T60 in seconds of modes that follow the level of the noise.
 const SHORT_T60: f64 = 0.04;
 /// Range in dB, down from its loudest window, in which the decay of a band is measured.
@@ -115,18 +119,14 @@ impl Decay {
             .filter_map(|(n, level)| Some((time(n), level?)))
             .take_while(|(_, level)| *level > top - FOLLOWED_DB)
             .collect();
-        let count = points.len() as f64;
-        let [t, y] =
-            [0, 1].map(|which| points.iter().map(|(t, y)| if which == 0 { *t } else { *y }).sum::<f64>() / count);
-        let (product, square) = points.iter().fold((0.0, 0.0), |(product, square), point| {
-            (product + (point.0 - t) * (point.1 - y), square + (point.0 - t) * (point.0 - t))
-        });
-        let slope = if count >= 4.0 { (product / square).min(-60.0 / T60.1) } else { -60.0 / 0.03 };
-        let off = points.iter().map(|point| point.1 - y - slope * (point.0 - t)).map(|off| off * off).sum::<f64>();
+        let line = Line::through(points.iter().map(|(t, level)| [*t, *level, 1.0]))?;
+        let is_known = points.len() >= FEWEST_WINDOWS;
+        let line = Line { slope: if is_known { line.slope.min(-60.0 / T60.1) } else { -60.0 / BRIEF_T60 }, ..line };
+        let off = points.iter().map(|(t, level)| level - line.at(*t)).map(|off| off * off).sum::<f64>();
         Some(Self {
-            at_onset: if count >= 4.0 { (y - slope * t).min(top + 6.0) } else { top },
-            t60: (-60.0 / slope).clamp(T60.0, T60.1),
-            is_smooth: count >= 4.0 && off < SMOOTH_DB * SMOOTH_DB * count,
+            at_onset: if is_known { line.at(0.0).min(top + 6.0) } else { top },
+            t60: (-60.0 / line.slope).clamp(T60.0, T60.1),
+            is_smooth: is_known && off < SMOOTH_DB * SMOOTH_DB * line.weight,
         })
     }
 }

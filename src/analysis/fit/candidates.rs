@@ -23,8 +23,6 @@ const EXPLAINED_DB: f64 = -50.0;
 const WORTH_A_DRIFT_DB: f64 = 6.0;
 /// Reduction of the residual in dB by which a sweep is kept.
 const WORTH_A_SWEEP_DB: f64 = 2.0;
-/// Octaves within which a mode of a swept sound lies near a stronger one.
-const BESIDE: f64 = 0.3;
 /// Share of the spacing of bursts after which the last one is over.
 const AFTER_ECHO: f64 = 0.5;
 
@@ -33,7 +31,7 @@ const AFTER_ECHO: f64 = 0.5;
 /// * Its modes.
 /// * If it is held, or rises slowly and its modes do not explain it: the modes without its drift. Of a held sound they replace the first
 ///   ones if they explain much more.
-/// * Unless its modes explain it: those of each sweep that explains more, and of these also with a single mode for each tone.
+/// * Unless its modes explain it: those of each sweep that explains more.
 /// * If its modes explain little: the row of bursts with which it begins, noise that goes on for as long as the sound, and modes that
 ///   noise excites, found after the noise is over.
 /// * Unless its modes explain it, and if it has echoes: the tones that stay after these.
@@ -85,10 +83,7 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
         }
         // The draft without a sweep is kept too: a wrong sweep can leave a smaller residual and still sound worse.
         swept.retain(|swept| residual_db(swept) < still - WORTH_A_SWEEP_DB);
-        let fewer: Vec<Found> =
-            swept.iter().filter_map(|(draft, strike)| Some((sparse(draft)?, strike.clone()))).collect();
-        found.extend(swept.into_iter().chain(fewer));
-        // Stable, so that a sparse draft comes after that with all modes.
+        found.append(&mut swept);
         found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
     }
     let strike = found[0].1.clone();
@@ -119,21 +114,6 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
 /// Tells the share of a part of the work as that of all; false if the work is to end.
 fn within([from, to]: [f64; 2], tell: &mut dyn FnMut(f64) -> Result<()>) -> impl FnMut(f64) -> bool {
     move |share| tell(from + (to - from) * share).is_ok()
-}
-
-/// A draft without the modes that lie near a stronger one; none if there are no such modes. Where a sweep is not quite that of the
-/// sound, or tones decay at different rates, several modes that almost cancel stand for each tone. When they are played, they do not.
-fn sparse(draft: &Draft) -> Option<Draft> {
-    let mut partials = draft.partials.clone();
-    partials.sort_by(|a, b| b.energy().total_cmp(&a.energy()));
-    let mut kept: Vec<Partial> = Vec::new();
-    for partial in partials {
-        let is_far = |other: &Partial| libm::fabs(libm::log2(partial.frequency / other.frequency)) > BESIDE;
-        if kept.iter().all(is_far) {
-            kept.push(partial);
-        }
-    }
-    (kept.len() < draft.partials.len()).then(|| Draft { partials: kept, ..draft.clone() })
 }
 
 /// Drafts of the tones that stay after a row of bursts, found after the last of these; none if the sound ends before that.
@@ -182,22 +162,10 @@ fn residual_db((_, strike): &Found) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::bursts::tests::since_burst;
-    use super::super::correct;
     use super::super::prepared::tests::prepared;
     use super::*;
     use crate::dsp::random;
     use std::f64::consts::TAU;
-
-    #[test]
-    fn a_sparse_draft_has_one_mode_for_each_tone() {
-        let mode =
-            |frequency, amplitude| Partial { frequency, t60: 0.5, amplitude, phase: 0.0, pan: 0.0, struck: true };
-        let mut draft = correct::tests::draft([0.0; 2]);
-        draft.partials = vec![mode(95.0, 0.1), mode(100.0, -0.4), mode(160.0, 0.05), mode(101.0, 0.3)];
-        let found = sparse(&draft).unwrap();
-        assert_eq!(found.partials, [mode(100.0, -0.4), mode(160.0, 0.05)]);
-        assert_eq!(sparse(&found), None);
-    }
 
     #[test]
     fn tones_that_stay_after_echoes_are_found() {

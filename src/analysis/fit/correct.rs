@@ -2,6 +2,7 @@
 
 use super::draft::{Draft, Partial, SHORTEST_T60, longest_t60};
 use super::movement::{ENERGY_PER_T60, Sweep, speed_at};
+use crate::analysis::line::Line;
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, time, weights};
 use libm::{exp, pow};
 
@@ -22,16 +23,11 @@ pub(super) fn by_bands(draft: &Draft, target: &LogMel, heard: &LogMel, share: f6
     if draft.sweep.semitones != 0.0 {
         let speeds = speeds(&draft.sweep, errors.columns.len());
         return corrected(draft, share, |partial| {
-            let mut line = Line::default();
-            errors.along(partial, &speeds).for_each(|(n, _, error, weight)| line.add(time(n), error, weight));
-            line.correction()
+            correction(errors.along(partial, &speeds).map(|(n, _, error, weight)| (n, error, weight)))
         });
     }
-    let corrections: [Correction; BANDS] = std::array::from_fn(|band| {
-        let mut line = Line::default();
-        errors.of(band).for_each(|(n, error)| line.add(time(n), error, 1.0));
-        line.correction()
-    });
+    let corrections: [Correction; BANDS] =
+        std::array::from_fn(|band| correction(errors.of(band).map(|(n, error)| (n, error, 1.0))));
     corrected_by_bands(draft, share, &corrections)
 }
 
@@ -64,13 +60,10 @@ pub(super) fn by_moments(draft: &Draft, target: &LogMel, heard: &LogMel, share: 
     let speeds = speeds(&draft.sweep, columns);
     let powers = powers(&draft.partials, &speeds);
     corrected(draft, share, |partial| {
-        let mut line = Line::default();
         let own: Vec<f64> = powers_of(partial, columns).collect();
         let share = |n: usize, band: usize, weight: f64| weight * own[n] / powers[n][band];
-        errors.along(partial, &speeds).for_each(|(n, band, error, weight)| {
-            line.add(time(n), error, share(n, band, weight) * weight);
-        });
-        line.correction()
+        let weighted = |(n, band, error, weight)| (n, error, share(n, band, weight) * weight);
+        correction(errors.along(partial, &speeds).map(weighted))
     })
 }
 
@@ -138,33 +131,14 @@ impl Errors {
     }
 }
 
-/// A line through weighted points, by least squares.
-#[derive(Default)]
-struct Line {
-    points: Vec<[f64; 3]>,
-}
-
-impl Line {
-    fn add(&mut self, time: f64, error: f64, weight: f64) {
-        self.points.push([time, error, weight]);
-    }
-
-    fn correction(&self) -> Correction {
-        let sum =
-            |value: &dyn Fn(&[f64; 3]) -> f64| self.points.iter().map(|point| point[2] * value(point)).sum::<f64>();
-        let count = sum(&|_| 1.0);
-        if count < 1e-6 {
-            return (0.0, 0.0);
-        }
-        let (t, y) = (sum(&|point| point[0]) / count, sum(&|point| point[1]) / count);
-        let square = sum(&|point| (point[0] - t) * (point[0] - t));
+/// The correction by a line through errors: their times, the errors and their weights.
+fn correction(errors: impl Iterator<Item = (usize, f64, f64)>) -> Correction {
+    let errors: Vec<[f64; 3]> = errors.map(|(n, error, weight)| [time(n), error, weight]).collect();
+    match Line::through(errors.iter().copied()) {
+        Some(line) if line.weight >= FEWEST => (line.at(0.0), line.slope),
         // With a weight of less than one window, the error is uncertain: correct only a part of it.
-        let known = count.min(1.0);
-        if count < FEWEST || square == 0.0 {
-            return (known * y, 0.0);
-        }
-        let slope = sum(&|point| (point[0] - t) * (point[1] - y)) / square;
-        (y - slope * t, slope)
+        Some(line) => (line.weight.min(1.0) * line.y, 0.0),
+        None => (0.0, 0.0),
     }
 }
 

@@ -9,6 +9,7 @@ use super::prepared::SLOW;
 use super::resample::Reader;
 use super::sway;
 use super::tones::{HOP, Tone, tones};
+use crate::analysis::line::Line;
 use crate::analysis::log_mel::RATE;
 use crate::analysis::modes::Strike;
 use crate::dsp::pitch::SweepEnvelope;
@@ -216,22 +217,15 @@ fn common(courses: &[Vec<[f64; 2]>], rise: usize, fall: bool) -> Vec<f64> {
 
 /// The line through a course without what is common, as its value at the first moment and its change per moment.
 fn line_through(course: &[[f64; 2]], common: &[f64], fall: bool) -> [f64; 2] {
-    let points = || {
-        course.iter().zip(common).enumerate().map(|(n, ([value, weight], common))| (n as f64, value - common, *weight))
-    };
-    let all = points().map(|point| point.2).sum::<f64>().max(1e-12);
-    let [t, y] = points().fold([0.0; 2], |[t, y], point| [t + point.2 * point.0 / all, y + point.2 * point.1 / all]);
-    let (product, square) = points().fold((0.0, 1e-12), |(product, square), point| {
-        let late = point.0 - t;
-        (product + point.2 * late * (point.1 - y), square + point.2 * late * late)
-    });
-    let slope = if fall { product / square } else { 0.0 };
-    [y - slope * t, slope]
+    let points = course.iter().zip(common).enumerate();
+    let line = Line::through(points.map(|(n, ([value, weight], common))| [n as f64, value - common, *weight]));
+    line.map_or([0.0; 2], |line| if fall { [line.at(0.0), line.slope] } else { [line.y, 0.0] })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dsp::random::uniform;
     use libm::{sin, sqrt};
     use std::f64::consts::TAU;
 
@@ -276,13 +270,7 @@ mod tests {
 
     #[test]
     fn noise_has_no_tones_and_so_no_drift() {
-        let mut chance = 1_u32;
-        let noise: Vec<f32> = (0..RATE)
-            .map(|_| {
-                chance = chance.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                chance as f32 / u32::MAX as f32 - 0.5
-            })
-            .collect();
+        let noise: Vec<f32> = (0..RATE.into()).map(|n| 0.5 * uniform(1, n)).collect();
         assert!(Drift::of(&noise, 0.0).is_none_or(|drift| drift.tremolo(&mut || true).unwrap().is_none()));
         assert!(Drift::of(&[0.0; 8192], 0.0).is_none());
     }

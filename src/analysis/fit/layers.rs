@@ -1,6 +1,7 @@
 //! Finds how an instrument's sound follows velocity and key, from several takes.
 
 use super::draft::Draft;
+use crate::analysis::line::Line;
 use crate::params::Param;
 use crate::patch::Patch;
 use crate::patch::routes::Source;
@@ -113,13 +114,8 @@ fn rounded(value: f64) -> f32 {
 
 /// The slope of a line through some points; none if they do not differ in `x`.
 pub(super) fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
-    let points: Vec<(f64, f64)> = points.collect();
-    let count = points.len() as f64;
-    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), point| (x + point.0 / count, y + point.1 / count));
-    let (product, square) = points.iter().fold((0.0, 0.0), |(product, square), point| {
-        (product + (point.0 - x) * (point.1 - y), square + (point.0 - x) * (point.0 - x))
-    });
-    (square > 1e-4).then(|| product / square)
+    let points: Vec<[f64; 3]> = points.map(|(x, y)| [x, y, 1.0]).collect();
+    Line::through(points.iter().copied()).filter(|line| line.spread > 1e-4).map(|line| line.slope)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Finds where a body is struck and picked up, from the levels of its modes in a sound.
 
 use super::draft::{Partial, contact_share, digits};
+use crate::analysis::line::Line;
 use crate::analysis::log_mel::RATE;
 use crate::sound::bodies::{Body, BodyMode, LN_1000, Point};
 use crate::sound::contact_time;
@@ -150,15 +151,11 @@ fn amplitude(samples: &[f32], frequency: f64, t60: f64) -> f64 {
 
 /// The slope in dB per octave of the line through some points, within a range, and their RMS deviation from it in dB.
 fn line(points: &[Excess], slopes: std::ops::RangeInclusive<f64>) -> (f64, f64) {
-    let sum = |value: &dyn Fn(&Excess) -> f64| points.iter().map(|point| point.weight * value(point)).sum::<f64>();
-    let weights = sum(&|_| 1.0).max(1e-12);
-    let (x, y) = (sum(&|point| point.octaves) / weights, sum(&|point| point.db) / weights);
-    let square = sum(&|point| (point.octaves - x) * (point.octaves - x));
-    let product = sum(&|point| (point.octaves - x) * (point.db - y));
-    let slope = if square > 1e-9 { (product / square).clamp(*slopes.start(), *slopes.end()) } else { 0.0 };
-    let off = sum(&|point| {
-        let off = point.db - y - slope * (point.octaves - x);
-        off * off
-    });
-    (slope, sqrt(off / weights))
+    let Some(line) = Line::through(points.iter().map(|point| [point.octaves, point.db, point.weight])) else {
+        return (0.0, 0.0);
+    };
+    let line = Line { slope: line.slope.clamp(*slopes.start(), *slopes.end()), ..line };
+    let off = |point: &Excess| point.db - line.at(point.octaves);
+    let squares = points.iter().map(|point| point.weight * off(point) * off(point)).sum::<f64>();
+    (line.slope, sqrt(squares / line.weight))
 }

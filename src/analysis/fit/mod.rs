@@ -256,7 +256,7 @@ impl Fitted {
     }
 
     /// Sample rate in Hz of its sounds.
-    pub fn sample_rate(&self) -> f64 {
+    pub(crate) fn sample_rate(&self) -> f64 {
         RATE.into()
     }
 }

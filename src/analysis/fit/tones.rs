@@ -1,6 +1,6 @@
 //! The tones of a sound: peaks of its mean spectrum, each with the course of its pitch and level.
 
-use super::layers::slope;
+use crate::analysis::line::Line;
 use crate::analysis::log_mel::RATE;
 use libm::{atan2, cos, log, log10, sin};
 use realfft::RealFftPlanner;
@@ -58,10 +58,10 @@ impl Tone {
         // Windows that reach beyond the end show a fall.
         let whole = self.course.len().saturating_sub(FOLLOWED / 2 / HOP);
         let points =
-            self.levels().into_iter().enumerate().take(whole).skip(from).map(|(n, [level, _])| (n as f64, level));
-        let slope = slope(points.clone()).unwrap_or(0.0).min(0.0);
-        let (sum, count) = points.fold((0.0, 0.0), |(sum, count), (n, level)| (sum + level - slope * n, count + 1.0));
-        (count > 0.0).then(|| [sum / count, slope])
+            self.levels().into_iter().enumerate().take(whole).skip(from).map(|(n, [level, _])| [n as f64, level, 1.0]);
+        let line = Line::through(points)?;
+        let line = Line { slope: line.slope.min(0.0), ..line };
+        Some([line.at(0.0), line.slope])
     }
 
     /// The logarithm of its level at each moment, with its weight.

@@ -38,7 +38,7 @@ const AUDIBLE: f64 = 0.03;
 const LEAST: f64 = 1e-30;
 
 /// Samples of a duration in seconds.
-pub fn samples(seconds: f64) -> usize {
+pub(crate) fn samples(seconds: f64) -> usize {
     (seconds * f64::from(RATE)) as usize
 }
 
@@ -226,7 +226,7 @@ pub(crate) fn timbre_change(first: &[f32], second: &[f32]) -> f64 {
 }
 
 /// Energy of the difference of two sounds at the same level, over that of the first, in dB.
-pub fn difference(first: &[f32], second: &[f32]) -> f64 {
+pub(crate) fn difference(first: &[f32], second: &[f32]) -> f64 {
     let product = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum::<f64>();
     let own = product(first, first).max(LEAST);
     let shared = product(first, second);

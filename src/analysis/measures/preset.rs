@@ -33,7 +33,7 @@ const HIGH_SHARE_DB: f64 = 10.0;
 const FAINT_DB: f64 = -30.0;
 
 /// A sound in stereo at [`RATE`].
-pub type Stereo = [Vec<f32>; 2];
+pub(crate) type Stereo = [Vec<f32>; 2];
 
 /// One measure of a preset.
 #[derive(Clone, Debug)]
@@ -94,7 +94,7 @@ impl Player {
 ///
 /// # Errors
 /// [`Error::Value`] if the loudness meter fails.
-pub fn loudest(sound: &Stereo) -> Result<Option<f64>> {
+pub(crate) fn loudest(sound: &Stereo) -> Result<Option<f64>> {
     let failed = |error: ebur128::Error| Error::value("loudness", error.to_string());
     let mut meter = EbuR128::new(2, RATE, Mode::M).map_err(failed)?;
     let (mut loudest, silence) = (f64::NEG_INFINITY, vec![0.0; samples(0.4)]);

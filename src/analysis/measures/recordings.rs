@@ -19,14 +19,14 @@ pub struct Recording {
 }
 
 /// The values of all instruments.
-pub fn all() -> &'static [Recording] {
+pub(crate) fn all() -> &'static [Recording] {
     const TEXT: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/measures/recordings.toml"));
     static ALL: OnceLock<Vec<Recording>> = OnceLock::new();
     ALL.get_or_init(|| read(TEXT).expect("the embedded figures are checked by a test"))
 }
 
 /// The values with which a preset is compared; none if there is no such recording.
-pub fn of(preset: &str) -> Option<&'static Recording> {
+pub(crate) fn of(preset: &str) -> Option<&'static Recording> {
     all().iter().find(|recording| recording.presets.iter().any(|name| name == preset))
 }
 

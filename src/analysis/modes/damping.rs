@@ -8,6 +8,7 @@
 use super::fit::Fit;
 use super::pole::add;
 use crate::analysis::level::energy;
+use crate::analysis::line::Line;
 use libm::log10;
 use std::ops::Range;
 
@@ -63,32 +64,11 @@ const CLEAR: f64 = 0.001;
 /// Most dampers that are tried: each costs a search.
 const MOST_DAMPERS: usize = 2;
 
-/// A line through levels: its value at their first step, its slope per step, and the mean deviation from it.
-struct Line {
-    first: f64,
-    slope: f64,
-    deviation: f64,
-}
-
-impl Line {
-    fn through(levels: &[f64]) -> Self {
-        let count = levels.len() as f64;
-        let middle = (count - 1.0) / 2.0;
-        let mean = levels.iter().sum::<f64>() / count;
-        let (mut product, mut square) = (0.0, 0.0);
-        for (step, level) in levels.iter().enumerate() {
-            product += (step as f64 - middle) * (level - mean);
-            square += (step as f64 - middle) * (step as f64 - middle);
-        }
-        let slope = product / square;
-        let first = mean - slope * middle;
-        let error = |(step, level): (usize, &f64)| (level - first - slope * step as f64).abs();
-        Self { first, slope, deviation: levels.iter().enumerate().map(error).sum::<f64>() / count }
-    }
-
-    fn at(&self, step: f64) -> f64 {
-        self.first + self.slope * step
-    }
+/// The line through levels, and their mean deviation from it.
+fn line(levels: &[f64]) -> Option<(Line, f64)> {
+    let line = Line::through_values(levels)?;
+    let error = |(step, level): (usize, &f64)| (level - line.at(step as f64)).abs();
+    Some((line, levels.iter().enumerate().map(error).sum::<f64>() / line.weight))
 }
 
 /// Where a damper seems to act.
@@ -149,13 +129,13 @@ fn damped_from(samples: &[f64], sample_rate: f64) -> Option<Damper> {
 /// How the levels turn down for good at a place. `None` if they do not.
 fn bend(levels: &[f64], place: usize, reach: usize, quietest: f64) -> Option<Bend> {
     // A level covers several steps, so the levels right before the place include later sound.
-    let before = Line::through(&levels[place - reach..place + 1 - SMOOTH]);
+    let (before, off_before) = line(&levels[place - reach..place + 1 - SMOOTH])?;
     let until = (place + reach).min(levels.len());
-    let after = Line::through(&levels[place..until]);
+    let (after, off_after) = line(&levels[place..until])?;
     let last = (until - 1 - place) as f64;
     let expected = |later: f64| before.at(reach as f64 + later);
     let drop = expected(last) - after.at(last);
-    let significance = drop / (before.deviation + after.deviation + 0.25);
+    let significance = drop / (off_before + off_after + 0.25);
     if before.slope > RISING || drop < LEAST_DROP_DB || significance < LEAST_DEVIATIONS {
         return None;
     }
@@ -205,10 +185,10 @@ fn differs(fit: &Fit, samples: &[f64], range: Range<usize>, most_left: f64) -> b
 
 #[cfg(test)]
 mod tests {
-    use super::super::pole::LN_60_DB;
     use super::super::tests::driven;
     use super::super::{Settings, modes};
     use crate::dsp::random::{key, unit};
+    use crate::sound::bodies::LN_1000;
     use crate::units::gain_from_db;
     use libm::{exp, sin};
     use std::f64::consts::TAU;
@@ -225,7 +205,7 @@ mod tests {
                 let frequency = 300.0 * (1.0 + (k / 2) as f64 * 0.83) + 0.9 * (k % 2) as f64;
                 let t60 = 8.0 - 0.5 * k as f64;
                 let fall = t.min(LET_GO) / t60 + (t - LET_GO).max(0.0) / damper.min(t60);
-                0.1 * exp(-LN_60_DB * fall) * sin(TAU * frequency * t + k as f64)
+                0.1 * exp(-LN_1000 * fall) * sin(TAU * frequency * t + k as f64)
             };
             (0..8).map(mode).sum::<f64>() as f32
         };
@@ -266,7 +246,7 @@ mod tests {
     #[test]
     #[ignore = "takes half a minute"]
     fn the_end_of_what_modes_do_not_explain_is_no_damper() {
-        let mode = (TAU * 300.0 / RATE, exp(-LN_60_DB / (0.3 * RATE)));
+        let mode = (TAU * 300.0 / RATE, exp(-LN_1000 / (0.3 * RATE)));
         let sound = driven(&[mode], (0.15 * RATE) as usize, RATE as usize);
         assert_eq!(found(sound.into_iter().map(|sample| 0.01 * sample as f32).collect()), None);
     }

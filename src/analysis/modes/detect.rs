@@ -3,7 +3,8 @@
 //! For a mode of known decay and frequency, the sum of the samples times `e^(−decay·n)` at that frequency is the best
 //! detector in white noise (matched filter). One transform does this for all frequencies.
 
-use super::pole::{LN_60_DB, Pole};
+use super::pole::Pole;
+use crate::sound::bodies::LN_1000;
 use libm::exp;
 use realfft::RealFftPlanner;
 use std::cell::RefCell;
@@ -109,7 +110,7 @@ impl Spectra {
         let planner = &mut planner.0.borrow_mut();
         let longest = LONGEST.min(6.0 * samples.len() as f64 / sample_rate);
         let t60s = std::iter::successors(Some(SHORTEST), |t60| Some(2.0 * t60)).take_while(|t60| *t60 < 2.0 * longest);
-        let decay = |t60: f64| LN_60_DB / (t60 * sample_rate);
+        let decay = |t60: f64| LN_1000 / (t60 * sample_rate);
         Self(t60s.map(|t60| Spectrum::new(samples, decay(t60), sample_rate, planner)).collect())
     }
 

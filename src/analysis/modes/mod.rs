@@ -47,11 +47,12 @@ pub use mode::{Group, Kind, Mode, Strike, Uncertainty};
 
 use super::level::{cancelling, dbfs, energy, mean_of, offset};
 use crate::error::{Error, Result};
+use crate::sound::bodies::LN_1000;
 use fit::Fit;
 use groups::groups;
 use libm::{log10, sqrt};
 use plausible::{AUDIBLE, Limits};
-use pole::{LN_60_DB, add};
+use pole::add;
 use std::f64::consts::{LN_10, PI};
 use strikes::{BLOCK, Stretch, strikes};
 
@@ -239,7 +240,7 @@ fn strike(found: &search::Found, fits: &[Option<Fit>], sound: &[f64], stretch: &
     let frequency = |k: usize| found.fit.poles[k].theta * sample_rate / (2.0 * PI);
     let decays = |k: &usize| {
         let decay = found.fit.poles[*k].decay;
-        decay > DEVIATIONS * deviation(*k, 0) && LN_60_DB / (decay * sample_rate) < ENDLESS
+        decay > DEVIATIONS * deviation(*k, 0) && LN_1000 / (decay * sample_rate) < ENDLESS
     };
     let (decaying, steady): (Vec<usize>, Vec<usize>) =
         (0..found.fit.poles.len()).filter(|k| frequency(*k) >= AUDIBLE).partition(decays);
@@ -252,8 +253,8 @@ fn strike(found: &search::Found, fits: &[Option<Fit>], sound: &[f64], stretch: &
             (level, libm::remainder(cosine + 0.5 * PI, 2.0 * PI))
         };
         let (level_db, phase) = at_onset(&found.fit);
-        let decay = pole.decay.max(LN_60_DB / (ENDLESS * sample_rate));
-        let t60 = LN_60_DB / (decay * sample_rate);
+        let decay = pole.decay.max(LN_1000 / (ENDLESS * sample_rate));
+        let t60 = LN_1000 / (decay * sample_rate);
         Mode {
             frequency: frequency(k),
             t60,

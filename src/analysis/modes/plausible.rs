@@ -4,7 +4,8 @@
 //! other. Such modes explain much, so they stand out of noise, but they have no meaning for the sound.
 
 use super::fit::{Certainty, Fit};
-use super::pole::{LN_60_DB, Pole};
+use super::pole::Pole;
+use crate::sound::bodies::LN_1000;
 use libm::{exp, sqrt};
 use std::f64::consts::PI;
 
@@ -49,7 +50,7 @@ impl Limits {
     }
 
     fn rings(&self, pole: Pole) -> bool {
-        let longest = LN_60_DB / (SHORTEST * self.sample_rate);
+        let longest = LN_1000 / (SHORTEST * self.sample_rate);
         // The bandwidth at half power is decay / π cycles per sample.
         pole.decay <= longest && 2.0 * pole.decay * LEAST_QUALITY <= pole.theta
     }

@@ -4,8 +4,6 @@ use libm::{exp, log, sincos};
 use nalgebra::DMatrix;
 use realfft::num_complex::Complex;
 
-pub(super) use crate::analysis::damped_sine::LN_60_DB;
-
 /// Samples per block: within it powers come from a table, from block to block from a recurrence.
 const BLOCK: usize = 64;
 /// Number of blocks after which the recurrence starts from an exact power again.

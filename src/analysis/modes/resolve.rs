@@ -3,9 +3,10 @@
 use super::detect::{Planner, Spectra};
 use super::esprit::Band;
 use super::fit::Fit;
-use super::pole::{LN_60_DB, Pole, add};
+use super::pole::{Pole, add};
 use super::prune::DETECTION;
 use crate::analysis::level;
+use crate::sound::bodies::LN_1000;
 use libm::fabs;
 use realfft::num_complex::Complex;
 use std::f64::consts::PI;
@@ -137,7 +138,7 @@ impl Resolution<'_> {
 
 /// The band in which a pole is resolved: about as long as its T60.
 fn band(pole: Pole, len: usize) -> Band {
-    Band::new(pole.theta, ((1.2 * LN_60_DB / pole.decay) as usize).min(len))
+    Band::new(pole.theta, ((1.2 * LN_1000 / pole.decay) as usize).min(len))
 }
 
 /// Number of samples after which almost nothing is left of a residual.

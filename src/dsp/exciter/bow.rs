@@ -30,7 +30,7 @@ pub struct Bow {
 
 impl Bow {
     /// Speed and maximum friction in the frame that is `frame` frames after the next one.
-    pub fn at(&self, frame: usize) -> [f32; 2] {
+    pub(crate) fn at(&self, frame: usize) -> [f32; 2] {
         let passed = self.passed as f32 + (frame + 1) as f32;
         [self.speed, self.force].map(|[start, step]| (start + passed * step).max(0.0))
     }

@@ -78,7 +78,7 @@ impl Exciter {
     }
 
     /// Whether any force is still to come.
-    pub fn is_active(&self) -> bool {
+    pub(crate) fn is_active(&self) -> bool {
         self.frames_left > 0
     }
 
@@ -88,7 +88,7 @@ impl Exciter {
     }
 
     /// The slot of the strike that was started last.
-    pub fn newest(&self) -> usize {
+    pub(crate) fn newest(&self) -> usize {
         (self.next + OVERLAPPING - 1) % OVERLAPPING
     }
 
@@ -99,7 +99,7 @@ impl Exciter {
 
     /// A copy in which only the strike in this slot is in progress.
     #[must_use]
-    pub fn only(&self, slot: usize) -> Self {
+    pub(crate) fn only(&self, slot: usize) -> Self {
         let mut blows = [Blow::REST; OVERLAPPING];
         blows[slot] = self.blows[slot];
         Self { blows, next: self.next, frames_left: blows[slot].frames_left() }

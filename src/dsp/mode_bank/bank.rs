@@ -10,8 +10,8 @@ use super::{ExcitationRows, LEAST_LN_RADIUS, MAX_MODES, MOST_LN_RADIUS, ModeRows
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::coefficients::{LN_MINUS_60_DB, angle_from_frequency};
 use crate::dsp::exciter::{Bow, Drive};
+use crate::dsp::simd::Instructions;
 use crate::dsp::simd::vector::LANES;
-use crate::dsp::simd::{Instructions, Level};
 
 /// The bank makes tables after free ringing at one pitch for one control tick per this many modes. With few modes, the
 /// tables save the time that they cost within one tick, with 64 modes within about eight.
@@ -112,11 +112,6 @@ impl ModeBank {
         }
     }
 
-    /// The instruction level that the bank uses.
-    pub fn instructions(&self) -> Level {
-        self.instructions.level()
-    }
-
     /// Fills the bank with modes at rest, at a pitch ratio of 1. Nothing remains of what the bank played before: it gives the
     /// same bits as a new one.
     pub fn load(&mut self, modes: &ModeRows) {
@@ -148,13 +143,8 @@ impl ModeBank {
     }
 
     /// Number of modes.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.len
-    }
-
-    /// Whether the bank has no modes.
-    pub fn is_empty(&self) -> bool {
-        self.len == 0
     }
 
     /// Sets how strongly the pulse and noise excite the modes.
@@ -189,7 +179,7 @@ impl ModeBank {
 
     /// Adds velocity to mode `m` in the direction in which it moves: its amplitude grows by `amplitude` at most, and the output
     /// does not jump. Does nothing if there is no mode `m`.
-    pub fn nudge(&mut self, m: usize, amplitude: f32) {
+    pub(crate) fn nudge(&mut self, m: usize, amplitude: f32) {
         if m >= self.len {
             return;
         }
@@ -209,7 +199,7 @@ impl ModeBank {
     }
 
     /// Changes the T60 of mode `m` to `t60` seconds, at once. Follow with [`ModeBank::sweep_to`].
-    pub fn set_t60(&mut self, m: usize, t60: f64) {
+    pub(crate) fn set_t60(&mut self, m: usize, t60: f64) {
         self.leave_tables();
         self.ln_radius[m] = ln_radius(t60, self.sample_rate);
         (self.retuned, self.displaced) = (true, false);
@@ -217,7 +207,7 @@ impl ModeBank {
 
     /// Gives the modes, in their order, new frequencies in Hz and T60s in seconds while they ring. The pitch does not
     /// change until the next [`ModeBank::sweep_to`], which must follow.
-    pub fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
+    pub(crate) fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
         for (m, (frequency, t60)) in modes.take(self.len).enumerate() {
             self.half_angle[m] = 0.5 * angle_from_frequency(frequency, self.sample_rate);
             self.set_t60(m, t60);
@@ -369,7 +359,7 @@ impl ModeBank {
     }
 
     /// As [`ModeBank::render`], under a bow. This is slower than with other forces, since each frame depends on the previous one.
-    pub fn render_bowed(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
+    pub(crate) fn render_bowed(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
         debug_assert!(frames <= self.until_tick);
         let frames = frames.min(CONTROL_FRAMES);
         if drive.is_some() || bow.is_some() {
@@ -406,24 +396,23 @@ impl ModeBank {
 
     /// Displacement and squared amplitude of mode `m`, at full gain, for display. During a tick that is rendered by
     /// tables, these are the values at the start of the tick.
-    pub fn mass(&self, m: usize) -> (f32, f32) {
+    pub(crate) fn mass(&self, m: usize) -> (f32, f32) {
         let State { x, y } = &self.states[self.current];
         (x.0[m], x.0[m] * x.0[m] + y.0[m] * y.0[m])
     }
 
-    /// A copy of the bank at rest.
-    #[must_use]
-    pub fn at_rest(&self) -> Self {
-        Self { states: [State::REST; 2], ..self.clone() }
+    /// Sets every mode to rest.
+    pub(crate) fn rest(&mut self) {
+        self.states = [State::REST; 2];
     }
 
-    /// A copy of the bank with the state of another one, which has as many modes and renders nothing from tables.
-    #[must_use]
-    pub(crate) fn with_state_of(&self, other: &Self) -> Self {
+    /// Takes over the state of another bank, which has as many modes and renders nothing from tables.
+    pub(crate) fn take_state_of(&mut self, other: &Self) {
+        (self.states, self.current) = (other.states, other.current);
         // In a tick that is rendered by tables, this bank's state is that of the tick's start, and the other's that of this frame.
-        let motion =
-            if matches!(self.motion, Motion::Tabled { .. }) { Motion::Still { ticks: 0 } } else { self.motion };
-        Self { states: other.states, current: other.current, motion, ..self.clone() }
+        if matches!(self.motion, Motion::Tabled { .. }) {
+            self.motion = Motion::Still { ticks: 0 };
+        }
     }
 
     /// Frames rendered since the state that [`ModeBank::mass`] returns.

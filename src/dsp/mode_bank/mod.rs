@@ -167,7 +167,7 @@ pub struct ExcitationRows {
 
 impl ExcitationRows {
     /// No excitation.
-    pub const NONE: Self = Self::all(ExcitationGains::NONE);
+    pub(crate) const NONE: Self = Self::all(ExcitationGains::NONE);
 
     /// The same gains for all modes. Noise has no phase.
     pub const fn all(ExcitationGains { push, pull, noise, turn: [cos, sin] }: ExcitationGains) -> Self {
@@ -176,7 +176,7 @@ impl ExcitationRows {
     }
 
     /// The gains of mode `m`.
-    pub fn at(&self, m: usize) -> ExcitationGains {
+    pub(crate) fn at(&self, m: usize) -> ExcitationGains {
         let Self { push, pull, noise, turn: [cos, sin], .. } = self;
         ExcitationGains { push: push[m], pull: pull[m], noise: noise[m], turn: [cos[m], sin[m]] }
     }

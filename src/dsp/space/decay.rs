@@ -7,19 +7,17 @@ use libm::{exp2, log2};
 /// over the logarithm of frequency; below and above it is constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decay {
-    /// T60 up to [`Decay::LOW_FREQUENCY`].
+    /// T60 up to `Decay::LOW_FREQUENCY`.
     pub low: f64,
-    /// T60 from [`Decay::HIGH_FREQUENCY`] on.
+    /// T60 from 6.4 kHz on.
     pub high: f64,
 }
 
 impl Decay {
     /// Upper end of the range of `low`, in Hz.
-    pub const LOW_FREQUENCY: f64 = 200.0;
-    /// Lower end of the range of `high`, in Hz.
-    pub const HIGH_FREQUENCY: f64 = 6400.0;
+    pub(crate) const LOW_FREQUENCY: f64 = 200.0;
     /// Shortest and longest T60 in seconds. With longer ones, the rounding of single precision would change the decay.
-    pub const RANGE: [f64; 2] = [0.05, 30.0];
+    pub(crate) const RANGE: [f64; 2] = [0.05, 30.0];
 
     /// T60 in seconds at a frequency in Hz.
     pub fn t60_at(&self, frequency: f64) -> f64 {
@@ -69,7 +67,7 @@ mod tests {
     fn the_ends_are_as_asked() {
         let decay = Decay { low: 4.0, high: 1.0 };
         assert!((decay.t60_at(100.0) - 4.0).abs() < 1e-12 && (decay.t60_at(9000.0) - 1.0).abs() < 1e-12);
-        assert_eq!(Decay::HIGH_FREQUENCY, Decay::LOW_FREQUENCY * exp2(OCTAVES));
+        assert_eq!(6400.0, Decay::LOW_FREQUENCY * exp2(OCTAVES));
         assert!((decay.t60_at(1131.37) - 2.0).abs() < 1e-5, "the geometric mean halfway");
         let wild = Decay { low: f64::NAN, high: f64::INFINITY };
         assert_eq!([wild.t60_at(100.0), wild.t60_at(9000.0)], Decay::RANGE.map(|t60| exp2(log2(t60))));

@@ -25,7 +25,7 @@ impl Material {
     /// Bronze with a fifth of tin, as in bells and cymbals.
     pub(crate) const BRONZE: Self = Self::new(110e9, 8800.0, 0.34);
     /// Window glass.
-    pub const GLASS: Self = Self::new(70e9, 2500.0, 0.22);
+    pub(crate) const GLASS: Self = Self::new(70e9, 2500.0, 0.22);
 
     const fn new(youngs_modulus: f64, density: f64, poissons_ratio: f64) -> Self {
         Self { youngs_modulus, density, poissons_ratio }

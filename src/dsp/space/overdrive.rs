@@ -91,7 +91,7 @@ const FORGET: f64 = 0.05;
 
 impl Overdrive {
     /// Greatest drive in dB.
-    pub const MOST: f32 = 36.0;
+    pub(crate) const MOST: f32 = 36.0;
 
     /// An overdrive that is off.
     pub fn new(sample_rate: f64) -> Self {

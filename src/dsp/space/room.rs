@@ -49,7 +49,8 @@ const LARGEST: f64 = 200.0;
 impl Room {
     /// The expected number of modes below a frequency in Hz: `4πV/3 (f/c)³ + πS/4 (f/c)² + L/8 (f/c)` with the room's
     /// volume, surface and edges (R. H. Bolt 1939; Kuttruff, eq. 3.21).
-    pub fn expected_modes_below(&self, frequency: f64) -> f64 {
+    #[cfg(test)]
+    fn expected_modes_below(&self, frequency: f64) -> f64 {
         let ([a, b, c], per_metre) = (self.size, frequency / SPEED_OF_SOUND);
         let (volume, surface, edges) = (a * b * c, 2.0 * (a * b + b * c + c * a), 4.0 * (a + b + c));
         ((4.0 / 3.0 * PI * volume * per_metre + 0.25 * PI * surface) * per_metre + 0.125 * edges) * per_metre

@@ -46,7 +46,7 @@ impl Tone {
     /// Corner of the high shelf in Hz.
     pub(crate) const HIGH_CORNER: f64 = 3500.0;
     /// Greatest boost and cut in dB.
-    pub const MOST: f32 = 18.0;
+    pub(crate) const MOST: f32 = 18.0;
 
     /// A tone control that is off.
     pub fn new(sample_rate: f64) -> Self {

@@ -99,7 +99,7 @@ impl Tremolo {
     }
 
     /// Frames until the ramps of depth and phase end.
-    pub fn tail_frames(&self) -> u64 {
+    pub(crate) fn tail_frames(&self) -> u64 {
         self.depth.frames_left().max(self.stereo_phase.frames_left()).into()
     }
 

@@ -46,7 +46,7 @@ impl Width {
     }
 
     /// Frames until the ramp of the width ends.
-    pub fn tail_frames(&self) -> u64 {
+    pub(crate) fn tail_frames(&self) -> u64 {
         self.width.frames_left().into()
     }
 

@@ -167,12 +167,12 @@ impl Ensemble {
     }
 
     /// Amplitude ratio at which the channels are mixed, before the limiter.
-    pub fn gain(&self) -> f32 {
+    pub(crate) fn gain(&self) -> f32 {
         self.gain
     }
 
     /// How much the limiter has reduced the level so far. Real-time safe.
-    pub fn limiter_work(&self) -> Work {
+    pub(crate) fn limiter_work(&self) -> Work {
         self.limiter.work()
     }
 

@@ -48,13 +48,13 @@ impl Ensemble {
 
     /// As [`Ensemble::process`], with the incoming sound `input`, as in
     /// [`Synth::process_with_input`](crate::engine::Synth::process_with_input). Real-time safe.
-    pub fn process_with_input(&mut self, events: &[Event], input: &[f32], left: &mut [f32], right: &mut [f32]) {
+    pub(crate) fn process_with_input(&mut self, events: &[Event], input: &[f32], left: &mut [f32], right: &mut [f32]) {
         self.process_by(|parts, play| parts.iter_mut().for_each(play), events, input, left, right);
     }
 
-    /// As [`Ensemble::process_with_input`], but `each` runs the parts: it must call the function that it receives once with
-    /// every part, in any order and on any threads, since no part depends on another. The output is bit for bit the same.
-    /// As real-time safe as `each` is.
+    /// As [`Ensemble::process`], with the incoming sound `input`, but `each` runs the parts: it must call the function that it
+    /// receives once with every part, in any order and on any threads, since no part depends on another. The output is bit for
+    /// bit the same. As real-time safe as `each` is.
     pub fn process_by(
         &mut self,
         each: impl Fn(&mut [Part], &(dyn Fn(&mut Part) + Sync)),

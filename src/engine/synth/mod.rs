@@ -149,7 +149,7 @@ impl Synth {
     }
 
     /// The tuning in use. Real-time safe.
-    pub fn tuning(&self) -> &Tuning {
+    pub(crate) fn tuning(&self) -> &Tuning {
         self.instruments.tuning()
     }
 
@@ -196,9 +196,7 @@ impl Synth {
     }
 
     /// Finished notes, kept until the next [`Synth::process`]. Each is reported once: when its voice is silent or plays
-    /// another note, and no held key will return to it. At most [`MAX_ENDED`] are kept; the rest are not reported.
-    ///
-    /// [`MAX_ENDED`]: super::voice_manager::MAX_ENDED
+    /// another note, and no held key will return to it. At most `MAX_ENDED` are kept; the rest are not reported.
     pub fn ended(&self) -> &[Note] {
         self.manager.ended()
     }

@@ -51,7 +51,9 @@ impl Separation {
         self.struck = *note;
         let blow = Some(strike.exciter().newest());
         self.strikes.iter_mut().filter(|share| share.blow == blow).for_each(|share| share.blow = None);
-        self.strikes.push(SeparateStrike { note: *note, blow, modes: modes.at_rest() });
+        let mut modes = modes.clone();
+        modes.rest();
+        self.strikes.push(SeparateStrike { note: *note, blow, modes });
     }
 
     /// Renders the next frames of each strike's own modes. The voice's modes are about to render the same frames.
@@ -61,7 +63,8 @@ impl Separation {
             if let Some(blow) = share.blow {
                 strike.exciter().only(blow).fill(frames, &mut drive);
             }
-            share.modes = modes.with_state_of(&share.modes);
+            let before = std::mem::replace(&mut share.modes, modes.clone());
+            share.modes.take_state_of(&before);
             share.modes.render(Some(&drive), None, frames);
         }
     }

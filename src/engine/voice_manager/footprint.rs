@@ -13,16 +13,16 @@ pub struct Footprint {
 
 impl Footprint {
     /// No voices and no cells.
-    pub const NONE: Self = Self { voices: 0, cells: 0 };
+    pub(crate) const NONE: Self = Self { voices: 0, cells: 0 };
 
     /// Whether `room` has enough of both.
-    pub fn fits(self, room: Self) -> bool {
+    pub(crate) fn fits(self, room: Self) -> bool {
         self.voices <= room.voices && self.cells <= room.cells
     }
 
     /// The larger of each of the two numbers.
     #[must_use]
-    pub fn max(self, other: Self) -> Self {
+    pub(crate) fn max(self, other: Self) -> Self {
         Self { voices: self.voices.max(other.voices), cells: self.cells.max(other.cells) }
     }
 

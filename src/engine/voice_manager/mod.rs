@@ -26,7 +26,7 @@ use slots::Slots;
 pub use voice::{Unison, Voice};
 
 /// Maximum number of ended notes that are kept until the host has collected them.
-pub const MAX_ENDED: usize = 1024;
+pub(crate) const MAX_ENDED: usize = 1024;
 
 /// Gives notes voices from a pool. Real-time safe after [`VoiceManager::new`].
 pub(crate) struct VoiceManager<V: Voice> {

@@ -44,10 +44,10 @@ pub struct Unison {
 
 impl Unison {
     /// The only voice of its note.
-    pub const ONE: Self = Self { index: 0, count: 1 };
+    pub(crate) const ONE: Self = Self { index: 0, count: 1 };
 
     /// Position of the voice among the others, evenly spaced from −1 to 1; 0 if it is the only one.
-    pub fn position(self) -> f64 {
+    pub(crate) fn position(self) -> f64 {
         if self.count < 2 { 0.0 } else { 2.0 * self.index as f64 / (self.count - 1) as f64 - 1.0 }
     }
 }

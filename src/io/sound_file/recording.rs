@@ -27,11 +27,6 @@ impl Recording {
         self.channels.first().map_or(0, Vec::len)
     }
 
-    /// Length in seconds.
-    pub fn seconds(&self) -> f64 {
-        self.frames() as f64 / f64::from(self.sample_rate)
-    }
-
     /// The mean of the channels. The sound must have this sample rate, since nothing is resampled here. `name` is the
     /// file's name in errors.
     ///

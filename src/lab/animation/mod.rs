@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use std::ops::Range;
 
 /// Maximum number of frames of an animation.
-pub const MOST_FRAMES: usize = 3000;
+pub(crate) const MOST_FRAMES: usize = 3000;
 
 /// One mass.
 pub struct Track {
@@ -39,7 +39,7 @@ pub struct Animation {
 
 impl Animation {
     /// Animates the first step size of a comparison at `rate` frames per second. Returns an error if the rate is not
-    /// positive, and for more than [`MOST_FRAMES`].
+    /// positive, and for more than `MOST_FRAMES`.
     pub fn new(comparison: &Comparison, rate: f64) -> Result<Self> {
         let end = comparison.setup.end;
         if !(rate > 0.0 && rate <= 50.0) {
@@ -88,7 +88,7 @@ impl Animation {
     }
 
     /// Where a position lies between the edges of the page, from 0 to 1, and whether it is on the page at all.
-    pub fn place(&self, x: f64) -> (f64, bool) {
+    pub(crate) fn place(&self, x: f64) -> (f64, bool) {
         share(x, &self.x)
     }
 }

@@ -90,7 +90,7 @@ impl Method {
     }
 
     /// Its name in figures.
-    pub fn title(self) -> &'static str {
+    pub(crate) fn title(self) -> &'static str {
         match self {
             Self::ExplicitEuler => "explicit Euler",
             Self::ImplicitEuler => "implicit Euler",
@@ -124,7 +124,7 @@ impl Method {
     }
 
     /// Where the method was published.
-    pub fn source(self) -> &'static str {
+    pub(crate) fn source(self) -> &'static str {
         match self {
             Self::ExplicitEuler => "Euler 1768",
             Self::ImplicitEuler => "Euler 1768; Hairer & Wanner 1996, §IV.3",

@@ -38,7 +38,7 @@ pub struct Bed {
 
 impl Bed {
     /// The bed with its starting values, which are our own choice.
-    pub const fn new(kind: BedKind) -> Self {
+    pub(crate) const fn new(kind: BedKind) -> Self {
         let (low, high, density) = match kind {
             BedKind::Shell => (1.0, 14.0, -0.5),
             BedKind::Box => (1.0, 20.0, 0.5),

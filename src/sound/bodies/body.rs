@@ -102,7 +102,7 @@ impl Body {
     }
 
     /// Its size, if its frequency follows from the size.
-    pub fn size(&self) -> Option<Size> {
+    pub(crate) fn size(&self) -> Option<Size> {
         match self.pitch {
             Pitch::Size(size) => Some(size),
             Pitch::Frequency(_) => None,
@@ -110,7 +110,7 @@ impl Body {
     }
 
     /// Its frequency in Hz.
-    pub fn frequency(&self) -> f64 {
+    pub(crate) fn frequency(&self) -> f64 {
         let frequency = match &self.pitch {
             Pitch::Frequency(frequency) => *frequency,
             Pitch::Size(size) => self.model.frequency(size, &self.material).unwrap_or(DEFAULT_FREQUENCY),

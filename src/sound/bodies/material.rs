@@ -21,18 +21,13 @@ pub struct Loss {
 impl Loss {
     /// The loss of a material with loss factor η, plus `b0`: a mode's amplitude decays at the rate `π η f` (Cremer,
     /// Heckl and Petersson, "Structure-Borne Sound": T60 = 2.2 / (η f)).
-    pub const fn factor(eta: f64, b0: f64) -> Self {
+    pub(crate) const fn factor(eta: f64, b0: f64) -> Self {
         Self { b0, b1: PI * eta, power: 1.0 }
     }
 
     /// The decay rate at a frequency in Hz, in 1/s.
-    pub fn rate(&self, frequency: f64) -> f64 {
+    pub(crate) fn rate(&self, frequency: f64) -> f64 {
         self.b0 + self.b1 * pow(frequency, self.power)
-    }
-
-    /// The T60 at a frequency in Hz, in seconds: `ln 1000 / rate`.
-    pub fn t60(&self, frequency: f64) -> f64 {
-        LN_1000 / self.rate(frequency)
     }
 }
 
@@ -88,7 +83,7 @@ pub const MATERIALS: &[Material] = &[
 
 impl Material {
     /// Finds the material with this name.
-    pub fn find(id: &str) -> Option<&'static Self> {
+    pub(crate) fn find(id: &str) -> Option<&'static Self> {
         MATERIALS.iter().find(|material| material.id == id)
     }
 
@@ -111,7 +106,7 @@ mod tests {
     fn a_loss_factor_is_the_t60_that_the_book_says() {
         let loss = Loss::factor(1e-3, 0.0);
         for frequency in [100.0, 440.0, 5000.0] {
-            assert!((loss.t60(frequency) * 1e-3 * frequency / 2.2 - 1.0).abs() < 1e-3);
+            assert!((LN_1000 / loss.rate(frequency) * 1e-3 * frequency / 2.2 - 1.0).abs() < 1e-3);
         }
         assert!((LN_1000 - libm::log(1000.0)).abs() < 1e-15);
     }

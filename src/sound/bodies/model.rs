@@ -141,7 +141,7 @@ impl Model {
     }
 
     /// The material of a new body of this model.
-    pub fn material(&self) -> &'static Material {
+    pub(crate) fn material(&self) -> &'static Material {
         let id = match self {
             Self::String => "wire",
             Self::Mass | Self::FreeBar | Self::Tine | Self::Plate { .. } | Self::Custom(_) => "steel",
@@ -192,7 +192,7 @@ impl Model {
     }
 
     /// The frequency in Hz that follows from a size; `None` for models without a size.
-    pub fn frequency(&self, size: &Size, material: &Material) -> Option<f64> {
+    pub(crate) fn frequency(&self, size: &Size, material: &Material) -> Option<f64> {
         Some(match self {
             Self::String => string::frequency(size, material),
             Self::FreeBar => bar::frequency(Ends::Free, size, material),

@@ -13,7 +13,7 @@ impl Body {
     /// Allocates.
     ///
     /// The table contains only ratios. For a body that does not follow the keys ([`Body::follows_key`]), the caller
-    /// must make every key sound at the body's own [`Body::frequency`], so that the ratios give the body's frequencies.
+    /// must make every key sound at the body's own `Body::frequency`, so that the ratios give the body's frequencies.
     pub fn table(&self) -> ModeTable {
         let modes = self.most(MAX_MODES).modes();
         let t60 = pitch_mode(&modes).map_or(1.0, |mode| mode.t60);

@@ -169,8 +169,8 @@ fn no_modes_at_all_are_one_mass() {
     let custom = Body { pickup: Point { x: 0.0, y: 0.0 }, ..Body::new(Model::Custom(modes.into())) };
     let [low, high] = custom.modes()[..] else { panic!("two modes") };
     assert_eq!((low.level, high.level), (0.25, -0.5));
-    assert_eq!(low.t60, custom.material.loss.t60(DEFAULT_FREQUENCY));
-    assert_eq!(high.t60, 0.5 * custom.material.loss.t60(2.0 * DEFAULT_FREQUENCY));
+    assert_eq!(low.t60, LN_1000 / custom.material.loss.rate(DEFAULT_FREQUENCY));
+    assert_eq!(high.t60, 0.5 * (LN_1000 / custom.material.loss.rate(2.0 * DEFAULT_FREQUENCY)));
 }
 
 /// FNV-1a over the bits of every number of every mode.

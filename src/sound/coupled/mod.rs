@@ -132,7 +132,7 @@ fn start_at_rest(modes: &[CoupledMode]) -> bool {
 /// # Errors
 ///
 /// [`Error::Value`] for a number that is out of range.
-pub fn apart(first: &[BodyMode], second: &[BodyMode]) -> Result<Vec<CoupledMode>> {
+pub(crate) fn apart(first: &[BodyMode], second: &[BodyMode]) -> Result<Vec<CoupledMode>> {
     first.iter().chain(second).try_for_each(BodyMode::check)?;
     let free = |mode: &BodyMode, on: [f64; 2]| {
         let shapes = |shape: f64| on.map(|on| on * shape);
@@ -158,7 +158,7 @@ pub fn apart(first: &[BodyMode], second: &[BodyMode]) -> Result<Vec<CoupledMode>
 /// # Errors
 ///
 /// [`Error::Value`] for a number that is out of range.
-pub fn series(first: &[BodyMode], second: &[BodyMode], stiffness: f64) -> Result<Vec<CoupledMode>> {
+pub(crate) fn series(first: &[BodyMode], second: &[BodyMode], stiffness: f64) -> Result<Vec<CoupledMode>> {
     first.iter().chain(second).try_for_each(BodyMode::check)?;
     if !(0.0..=1e30).contains(&stiffness) {
         return Err(Error::value("stiffness", format!("{stiffness} is not between 0 and 1e30 N/m")));

@@ -3,7 +3,7 @@
 use super::complex::Complex;
 use crate::error::{Error, Result};
 
-/// One mode of a free body. The shapes are for a modal mass of 1 kg; see [`BodyMode::with_mass`].
+/// One mode of a free body. The shapes are for a modal mass of 1 kg; see `BodyMode::with_mass`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMode {
     /// Angular frequency of the damped oscillation, in radians per second: `2π f`. (Without damping it would be `√(ω² + σ²)`.)
@@ -21,7 +21,7 @@ pub struct BodyMode {
 impl BodyMode {
     /// The mode with a modal mass in kg: its shapes are divided by `√mass`.
     #[must_use]
-    pub fn with_mass(self, mass: f64) -> Self {
+    pub(crate) fn with_mass(self, mass: f64) -> Self {
         let scale = 1.0 / mass.sqrt();
         Self { joint: self.joint * scale, strike: self.strike * scale, pickup: self.pickup * scale, ..self }
     }
@@ -83,7 +83,7 @@ impl CoupledMode {
     ///
     /// `struck` is the fraction of the strike on each body, and `heard` is the output gain of each body:
     /// `[1.0, 0.0]` for the first body alone.
-    pub fn displacement(&self, struck: [f64; 2], heard: [f64; 2]) -> Partial {
+    pub(crate) fn displacement(&self, struck: [f64; 2], heard: [f64; 2]) -> Partial {
         let amplitude = self.amplitude(struck, heard);
         Partial { cosine: amplitude.re, sine: -amplitude.im }
     }

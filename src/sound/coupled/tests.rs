@@ -1,30 +1,20 @@
 //! Physical laws that joined bodies must obey.
 
 use super::*;
-use crate::dsp::random;
+use crate::dsp::random::Sequence;
 
-/// A seed, and how many of its numbers were drawn.
-struct Chance(u64, u64);
+/// Random bodies and joints.
+struct Chance(Sequence);
 
 impl Chance {
-    fn bits(&mut self) -> u64 {
-        self.1 += 1;
-        random::bits(self.0, self.1)
-    }
-
-    fn real(&mut self) -> f64 {
-        self.1 += 1;
-        random::unit(self.0, self.1)
-    }
-
     /// A number between `2^low` and `2^(low + range + 1)`, about as often in each octave.
-    fn octaves(&mut self, low: i32, range: u64) -> f64 {
-        let octave = low + (self.bits() % range) as i32;
-        (0..octave.abs()).fold(1.0 + self.real(), |x, _| if octave > 0 { 2.0 * x } else { 0.5 * x })
+    fn octaves(&mut self, low: i32, range: usize) -> f64 {
+        let octave = low + self.0.below(range) as i32;
+        (0..octave.abs()).fold(1.0 + self.0.unit(), |x, _| if octave > 0 { 2.0 * x } else { 0.5 * x })
     }
 
     fn body(&mut self, modes: usize, rate: f64) -> Vec<BodyMode> {
-        let mut shape = || 2.0 * self.real() - 1.0;
+        let mut shape = || 2.0 * self.0.unit() - 1.0;
         (0..modes)
             .map(|_| {
                 let (u, v) = (shape(), shape());
@@ -42,23 +32,23 @@ impl Chance {
     /// Two bodies, in which some modes have nearly or exactly the same frequency, and a joint from almost zero to
     /// almost rigid.
     fn pair(&mut self) -> ([Vec<BodyMode>; 2], Joint) {
-        let rate = [0.0, 1.0, 50.0, 1000.0, 30_000.0][(self.bits() % 5) as usize];
+        let rate = [0.0, 1.0, 50.0, 1000.0, 30_000.0][self.0.below(5)];
         let [one, other] = [(); 2].map(|()| {
-            let most = [4, 12, 40][(self.bits() % 3) as usize];
-            1 + (self.bits() % most) as usize
+            let most = [4, 12, 40][self.0.below(3)];
+            1 + self.0.below(most)
         });
         let mut bodies = [self.body(one, rate), self.body(other, rate)];
         let [first, second] = &mut bodies;
         for (of_the_first, second) in first.iter().zip(second) {
-            match self.bits() % 8 {
-                0 => second.angular_frequency = of_the_first.angular_frequency * (1.0 + 1e-10 * self.real()),
+            match self.0.below(8) {
+                0 => second.angular_frequency = of_the_first.angular_frequency * (1.0 + 1e-10 * self.0.unit()),
                 1 => second.angular_frequency = of_the_first.angular_frequency,
                 2 => *second = BodyMode { joint: second.joint, strike: second.strike, ..*of_the_first },
                 3 => second.joint = 0.0,
                 _ => {}
             }
         }
-        let joint = match self.bits() % 8 {
+        let joint = match self.0.below(8) {
             0 => Joint::Rigid,
             1 => Joint::Spring { stiffness: self.octaves(-60, 160), damping: 0.0 },
             2 => Joint::Spring { stiffness: 0.0, damping: self.octaves(-60, 100) },
@@ -84,7 +74,7 @@ fn assert_sum(parts: impl Iterator<Item = Partial>, expected: f64, context: &str
 #[test]
 fn joined_bodies_keep_the_sum_rules_and_never_grow() {
     for case in 0..1500 {
-        let (bodies, joint) = Chance(case, 0).pair();
+        let (bodies, joint) = Chance(Sequence::new(case)).pair();
         let modes = joined(&bodies[0], &bodies[1], joint).unwrap();
         let context = format!("case {case}, {joint:?}");
         let both = [1.0, 1.0];
@@ -163,7 +153,7 @@ fn energy_is_what_a_blow_brings_and_only_falls() {
     for (case, rate, stiffness, damping) in
         [(1, 0.0, 1e7, 0.0), (2, 20.0, 1e8, 0.0), (3, 20.0, 1e6, 30.0), (4, 0.0, 3e9, 2.0), (5, 0.0, 1e5, 1e5)]
     {
-        let mut chance = Chance(case, 0);
+        let mut chance = Chance(Sequence::new(case));
         let bodies = [chance.body(5, rate), chance.body(7, rate)];
         let joint = Joint::Spring { stiffness, damping };
         let brought = total(&bodies, |mode, _| 0.5 * mode.strike * mode.strike);
@@ -183,7 +173,7 @@ fn energy_is_what_a_blow_brings_and_only_falls() {
 
 #[test]
 fn a_joint_of_nothing_gives_both_bodies_back() {
-    let mut chance = Chance(7, 0);
+    let mut chance = Chance(Sequence::new(7));
     let [first, second] = [chance.body(9, 40.0), chance.body(6, 3.0)];
     let joint = Joint::Spring { stiffness: 0.0, damping: 0.0 };
     let modes = joined(&first, &second, joint).unwrap();
@@ -245,7 +235,7 @@ fn two_equal_oscillators_split_into_sum_and_difference() {
 
 #[test]
 fn bodies_in_series_are_the_product_of_their_responses() {
-    let mut chance = Chance(11, 0);
+    let mut chance = Chance(Sequence::new(11));
     let first = chance.body(6, 30.0);
     let mut second = chance.body(8, 100.0);
     second[3].angular_frequency = first[2].angular_frequency;
@@ -304,7 +294,7 @@ fn what_is_out_of_range_is_refused_by_name() {
 fn bits_are_frozen() {
     let mut hash = 0xCBF2_9CE4_8422_2325_u64;
     for case in 0..40 {
-        let ([first, second], joint) = Chance(case, 0).pair();
+        let ([first, second], joint) = Chance(Sequence::new(case)).pair();
         let modes = [joined(&first, &second, joint), series(&first, &second, 1e6)];
         for mode in modes.into_iter().flatten().flatten() {
             let shapes = mode.strike.into_iter().chain(mode.pickup).flat_map(|shape| [shape.re, shape.im]);

@@ -88,7 +88,7 @@ impl Pair {
     ///
     /// # Errors
     /// [`Error::Value`] that names the first number that is out of range.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         for field in LINK_FIELDS {
             let value = (field.get)(self).unwrap_or(field.min);
             if !(field.min..=field.max).contains(&value) {

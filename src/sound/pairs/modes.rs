@@ -14,7 +14,7 @@ impl Pair {
     ///
     /// # Errors
     /// [`Error::Value`](crate::Error::Value) for a number that is out of range, and if the poles were not found.
-    pub fn modes(&self, frequency: f64) -> Result<Vec<CoupledMode>> {
+    pub(crate) fn modes(&self, frequency: f64) -> Result<Vec<CoupledMode>> {
         self.check()?;
         self.coupled(&self.free(), frequency)
     }

@@ -34,7 +34,7 @@ impl Pair {
     }
 
     /// Maximum number of modes of the pair.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.directions() * self.first.modes + self.second.modes
     }
 

@@ -33,7 +33,7 @@ pub struct Keymap {
 impl Keymap {
     /// The mapping without a file: degree 0 on key 60 (C4), each key plays the next degree, and key 69 (A4) has the
     /// frequency that the patch gives A4. Scala's own default is the same with A4 fixed at 440 Hz.
-    pub const LINEAR: Self =
+    pub(crate) const LINEAR: Self =
         Self { size: 0, keys: 0..=127, middle: 60, reference: 69, frequency: None, octave: 0, degrees: Vec::new() };
 
     /// Reads a keyboard mapping file. `origin` names it in errors.
@@ -41,7 +41,7 @@ impl Keymap {
     /// # Errors
     /// [`crate::Error::Io`] if it cannot be read; [`crate::Error::Format`] if it is larger than 1 MiB, and as
     /// [`Keymap::parse`].
-    pub fn read(reader: impl Read, origin: &str) -> Result<Self> {
+    pub(crate) fn read(reader: impl Read, origin: &str) -> Result<Self> {
         Self::parse(&lines::read(reader, origin)?, origin)
     }
 

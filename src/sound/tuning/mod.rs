@@ -63,7 +63,7 @@ impl Tuning {
     };
 
     /// The tuning of a scale with a keyboard mapping; [`Keymap::LINEAR`] if there is no file.
-    pub fn new(scale: &Scale, keymap: &Keymap) -> Self {
+    pub(crate) fn new(scale: &Scale, keymap: &Keymap) -> Self {
         Self(std::array::from_fn(|key| {
             let above_reference = keymap.interval_from_reference(scale, key as u8)?;
             let (reference, frequency) = keymap.reference();

@@ -18,6 +18,7 @@ use sprung::Error;
 use sprung::analysis::fit::Family;
 use sprung::analysis::log_mel::RATE;
 use sprung::analysis::measures::{DRUMS, TUNED};
+use sprung::dsp::random::uniform;
 use sprung::preset::Preset;
 
 /// Numbers of progress calls after which the fit is cancelled, and the number of calls that may follow.
@@ -53,13 +54,7 @@ fn a_cancelled_fit_asks_no_more() -> Outcome<()> {
 #[ignore = "takes half a minute"]
 fn the_progress_never_runs_backwards() -> Outcome<()> {
     let swell = |n: usize, noise: f32| (n as f32 / SWELL as f32).min(1.0) * noise;
-    let mut chance = 1_u32;
-    let noise: Vec<f32> = (0..2 * SWELL)
-        .map(|n| {
-            chance = chance.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            swell(n, chance as f32 / u32::MAX as f32 - 0.5)
-        })
-        .collect();
+    let noise: Vec<f32> = (0..2 * SWELL).map(|n| swell(n, 0.5 * uniform(1, n as u64))).collect();
     let stroke = preset_at(Preset::find("init")?, KEY).map(|channel| channel[..RATE as usize / 4].to_vec());
     let cases = [
         ("a stroke", &stroke, Family::Table),

@@ -4,6 +4,7 @@ use super::clock::Clock;
 use super::played::Outcome;
 use libm::{cos, exp, log, pow, sin, sqrt};
 use sprung::analysis::modes::{Settings, modes};
+use sprung::dsp::random::{Sequence, key};
 use std::f64::consts::TAU;
 
 const RATE: f64 = 44_100.0;
@@ -11,34 +12,22 @@ const RATE: f64 = 44_100.0;
 const MODES: usize = 60;
 const SECONDS: f64 = 2.0;
 /// Number of strikes, and the levels of their noise in dB, relative to the strongest mode.
-const SEEDS: u32 = 10;
+const SEEDS: u64 = 10;
 const NOISE_DB: [f64; 2] = [-400.0, -60.0];
 /// CPU seconds that a strike may take.
 const LONGEST: f64 = 3.0;
 
-/// Uniform numbers from 0 to 1 (Marsaglia's xorshift, 2003).
-struct Chance(u32);
-
-impl Chance {
-    fn uniform(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        f64::from(self.0) / f64::from(u32::MAX)
-    }
-
-    /// A number of a normal distribution (Box & Muller 1958).
-    fn normal(&mut self) -> f64 {
-        sqrt(-2.0 * log(self.uniform() + 1e-300)) * cos(TAU * self.uniform())
-    }
+/// A number of a normal distribution (Box & Muller 1958).
+fn normal(random: &mut Sequence) -> f64 {
+    sqrt(-2.0 * log(random.unit() + 1e-300)) * cos(TAU * random.unit())
 }
 
 /// Modes from 60 Hz to 14 kHz with T60s of 0.03 to 10 s, over 60 dB; no two nearer than the wider one's bandwidth and 1 Hz.
-fn strike(seed: u32, noise_db: f64) -> Vec<f32> {
-    let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9) | 1);
+fn strike(seed: u64, noise_db: f64) -> Vec<f32> {
+    let mut random = Sequence::new(key(seed, 0));
     let mut modes: Vec<[f64; 4]> = Vec::new();
     while modes.len() < MODES {
-        let [frequency, t60, level, phase] = std::array::from_fn(|_| chance.uniform());
+        let [frequency, t60, level, phase] = std::array::from_fn(|_| random.unit());
         let (frequency, t60) = (60.0 * pow(14_000.0 / 60.0, frequency), 0.03 * pow(333.0, t60));
         let is_apart = |mode: &[f64; 4]| (mode[0] - frequency).abs() > (2.2 / mode[1]).max(2.2 / t60).max(1.0);
         if modes.iter().all(is_apart) {
@@ -52,7 +41,7 @@ fn strike(seed: u32, noise_db: f64) -> Vec<f32> {
         let mode = |[frequency, t60, amplitude, phase]: &[f64; 4]| {
             amplitude * exp(-6.907_755 * t / t60) * sin(TAU * frequency * t + phase)
         };
-        modes.iter().map(mode).sum::<f64>() + noise * chance.normal()
+        modes.iter().map(mode).sum::<f64>() + noise * normal(&mut random)
     };
     let samples: Vec<f64> = (0..(SECONDS * RATE) as usize).map(sample).collect();
     let peak = samples.iter().fold(0.0_f64, |peak, sample| peak.max(sample.abs()));

@@ -3,7 +3,7 @@
 use super::reverb;
 use super::signal::{RATE, blocks_are_equal, decibels, impulse, noise, octave, peak, rms};
 use assert_no_alloc::{assert_no_alloc, violation_count};
-use sprung::dsp::random::{key, uniform};
+use sprung::dsp::random::{Sequence, key};
 use sprung::dsp::space::{BodyMode, Decay, ModalReverb, ModeSet, Plate, Resonator, Spring, Strings};
 use std::sync::LazyLock;
 
@@ -24,19 +24,11 @@ fn with_room(sets: &[&ModeSet]) -> ModalReverb {
     ModalReverb::new(Resonator::with_room(most, DECAY, RATE))
 }
 
-/// A sequence of random numbers from −1 to 1.
-fn numbers(seed: u64) -> impl FnMut() -> f64 {
-    let (stream, mut n) = (key(17, seed), 0);
-    move || {
-        n += 1;
-        f64::from(uniform(stream, n))
-    }
-}
-
 #[test]
 fn energy_never_exceeds_what_came_in() {
     for seed in 0..60 {
-        let mut next = numbers(seed);
+        let mut random = Sequence::new(key(17, seed));
+        let mut next = || f64::from(random.uniform());
         let count = 16 + (200.0 * (1.0 + next())) as usize;
         let modes = ModeSet::new((0..count).map(|_| BodyMode {
             frequency: 20.0 * libm::exp2(5.0 * (1.0 + next())),
@@ -382,7 +374,8 @@ fn nothing_is_allocated() {
     let bodies = [&*SMALL, &*SPRINGS, &*PAIR];
     let mut rings = with_room(&bodies);
     let [mut left, mut right] = noise(0.5, 2000, 40_000);
-    let mut next = numbers(1);
+    let mut random = Sequence::new(key(17, 1));
+    let mut next = || f64::from(random.uniform());
     assert_no_alloc(|| {
         for (left, right) in left.chunks_mut(100).zip(right.chunks_mut(100)) {
             rings.set_mix(next() as f32);

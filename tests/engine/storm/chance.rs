@@ -5,22 +5,18 @@
 //! bound.
 
 use super::case::{Kind, PARAM_IDS, RECORD};
-use sprung::dsp::random::{key, uniform};
+use sprung::dsp::random::{Sequence, key};
 
 /// The parameters with the largest effect on pitch and damping: half of the cases set some of them.
 const MOVING: [&str; 9] =
     ["glide", "vibrato", "vibrato_rate", "mode", "sweep", "sweep_time", "release", "decay", "bend_range"];
 
-struct Stream {
-    key: u64,
-    n: u64,
-}
+struct Stream(Sequence);
 
 impl Stream {
     /// 0–1.
     fn unit(&mut self) -> f64 {
-        self.n += 1;
-        f64::from(uniform(self.key, self.n)) * 0.5 + 0.5
+        f64::from(self.0.uniform()) * 0.5 + 0.5
     }
 
     fn below(&mut self, n: usize) -> usize {
@@ -47,7 +43,7 @@ fn byte_of(kind: Kind) -> u8 {
 
 /// The bytes of case number `serial` of a seed.
 pub(crate) fn case(seed: u64, serial: u64) -> Vec<u8> {
-    let mut stream = Stream { key: key(seed, serial), n: 0 };
+    let mut stream = Stream(Sequence::new(key(seed, serial)));
     let s = &mut stream;
     let preset = if s.chance(0.25) { 128 + s.byte() / 2 } else { 0 };
     let ensemble = if s.chance(0.01) { 128 } else { 0 };

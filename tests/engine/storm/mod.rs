@@ -101,7 +101,9 @@ fn storms(cases: u64) {
     );
     let shown: Vec<String> = failed.iter().take(SHOWN).map(|serial| describe(&chance::case(SEED, *serial))).collect();
     assert!(failed.is_empty(), "{} of {cases} cases fail, the first:\n{}", failed.len(), shown.join("\n"));
-    assert!(share(0.5) > 0.003, "something sounded");
+    // The bound adds up the peaks of all modes of all strikes, at the largest gain of the case. A single mode comes near it, many modes
+    // and strikes do not: half of the cases reach 0.004 of it, one in ten 0.12.
+    assert!(share(0.5) > 0.003 && share(0.9) > 0.1, "something sounded");
 }
 
 /// The fuzzer's kept cases. Each reached new code when it was kept.

@@ -3,8 +3,8 @@
 mod playing;
 mod refused;
 
+use crate::damped_sine::fit_unknown;
 use libm::{exp2, log2, pow};
-use sprung::analysis::damped_sine::fit_unknown;
 use sprung::engine::EventKind;
 use sprung::io::{Song, SongEvent};
 use sprung::params::Param;

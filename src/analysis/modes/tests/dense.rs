@@ -3,10 +3,10 @@
 use super::*;
 
 /// Modes of a drum head from 130 Hz on: 2 to 30 Hz apart, with bandwidths of 4 to 38 Hz.
-fn head(count: usize, chance: &mut Chance) -> Vec<Known> {
+fn head(count: usize, random: &mut Sequence) -> Vec<Known> {
     let mode = |place: usize| {
-        let frequency = 130.0 + 16.0 * (place as f64 + 0.9 * chance.uniform());
-        Known(frequency, 66.0 / frequency, 0.2 + 0.8 * chance.uniform(), 0.0)
+        let frequency = 130.0 + 16.0 * (place as f64 + 0.9 * random.unit());
+        Known(frequency, 66.0 / frequency, 0.2 + 0.8 * random.unit(), 0.0)
     };
     (0..count).map(mode).collect()
 }
@@ -25,9 +25,9 @@ fn modes_denser_than_their_bandwidths_are_told_apart_in_other_heads() {
 fn dense_modes(seeds: std::ops::RangeInclusive<u64>) {
     let count = 64;
     for seed in seeds {
-        let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
-        let known = head(count, &mut chance);
-        let (samples, ..) = sound(&known, 0.6, -300.0, &mut chance);
+        let mut random = Sequence::new(key(seed, 0));
+        let known = head(count, &mut random);
+        let (samples, ..) = sound(&known, 0.6, -300.0, &mut random);
         let strike = &taken_apart(samples).strikes[0];
         let is_found = |known: &&Known| {
             let near = |mode: &Mode| (mode.frequency - known.0).abs() < 0.5 && (mode.t60 / known.1 - 1.0).abs() < 0.05;
@@ -42,10 +42,10 @@ fn dense_modes(seeds: std::ops::RangeInclusive<u64>) {
 
 #[test]
 fn what_nobody_could_hear_beside_its_neighbour_is_no_mode() {
-    let mut chance = Chance(1);
+    let mut random = Sequence::new(1);
     for (level_db, heard) in [(-90.0, true), (-115.0, false)] {
         let faint = Known(442.7, 0.95, pow(10.0, level_db / 20.0), 0.3);
-        let (samples, ..) = sound(&[Known(440.0, 1.0, 1.0, 0.0), faint], 1.5, -300.0, &mut chance);
+        let (samples, ..) = sound(&[Known(440.0, 1.0, 1.0, 0.0), faint], 1.5, -300.0, &mut random);
         let found = &taken_apart(samples).strikes[0];
         assert_eq!(found.modes.len(), if heard { 2 } else { 1 }, "{level_db} dB: {:?}", found.modes);
     }

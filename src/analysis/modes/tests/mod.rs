@@ -7,6 +7,7 @@ mod presets;
 use super::fit::energy;
 use super::pole::Pole;
 use super::*;
+use crate::dsp::random::{Sequence, key};
 use libm::{cos, exp, log2, pow};
 use realfft::num_complex::Complex;
 
@@ -20,30 +21,18 @@ const MANY: u64 = 20;
 #[derive(Clone, Copy, Debug)]
 struct Known(f64, f64, f64, f64);
 
-/// Uniform numbers from 0 to 1 (Marsaglia's xorshift, 2003).
-struct Chance(u64);
-
-impl Chance {
-    fn uniform(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// A number of a normal distribution (Box & Muller 1958).
-    fn normal(&mut self) -> f64 {
-        let radius = sqrt(-2.0 * libm::log(self.uniform() + 1e-300));
-        radius * cos(2.0 * PI * self.uniform())
-    }
+/// A number of a normal distribution (Box & Muller 1958).
+fn normal(random: &mut Sequence) -> f64 {
+    let radius = sqrt(-2.0 * libm::log(random.unit() + 1e-300));
+    radius * cos(2.0 * PI * random.unit())
 }
 
 /// Samples of modes that noise drives for the first `len` of them. A mode is its angle per sample and its factor.
 pub(super) fn driven(modes: &[(f64, f64)], len: usize, all: usize) -> Vec<f64> {
-    let mut chance = Chance(1);
+    let mut random = Sequence::new(1);
     let mut before = vec![[0.0; 2]; modes.len()];
     let sample = |n: usize| {
-        let force = if n < len { chance.uniform() - 0.5 } else { 0.0 };
+        let force = if n < len { random.unit() - 0.5 } else { 0.0 };
         let next = |(mode, (theta, radius)): (&mut [f64; 2], &(f64, f64))| {
             let next = force + 2.0 * radius * cos(*theta) * mode[0] - radius * radius * mode[1];
             *mode = [next, mode[0]];
@@ -56,25 +45,25 @@ pub(super) fn driven(modes: &[(f64, f64)], len: usize, all: usize) -> Vec<f64> {
 
 /// Random modes from 60 Hz to 14 kHz, T60 0.03 to 10 s, levels over 60 dB, no two nearer than the wider one's bandwidth
 /// and 1 Hz; a quarter of them with a neighbour at about that distance.
-fn body(count: usize, chance: &mut Chance) -> Vec<Known> {
+fn body(count: usize, random: &mut Sequence) -> Vec<Known> {
     let mut modes: Vec<Known> = Vec::new();
     let clear = |modes: &[Known], frequency: f64, t60: f64| {
         let apart = |mode: &Known| (mode.0 - frequency).abs() > (2.2 / mode.1).max(2.2 / t60).max(1.0);
         modes.iter().all(apart)
     };
     while modes.len() < count {
-        let (frequency, t60) = (60.0 * pow(14_000.0 / 60.0, chance.uniform()), 0.03 * pow(333.0, chance.uniform()));
+        let (frequency, t60) = (60.0 * pow(14_000.0 / 60.0, random.unit()), 0.03 * pow(333.0, random.unit()));
         if !clear(&modes, frequency, t60) {
             continue;
         }
-        let amplitude = pow(10.0, -3.0 * chance.uniform());
-        let phase = |chance: &mut Chance| PI * (2.0 * chance.uniform() - 1.0);
-        modes.push(Known(frequency, t60, amplitude, phase(chance)));
+        let amplitude = pow(10.0, -3.0 * random.unit());
+        let phase = |random: &mut Sequence| PI * (2.0 * random.unit() - 1.0);
+        modes.push(Known(frequency, t60, amplitude, phase(random)));
         let neighbour = frequency + 1.02 * (2.2 / t60).max(1.0);
-        let (before, t60) = (modes.len() - 1, t60 * (1.0 + 0.3 * chance.uniform()));
-        if chance.uniform() < 0.25 && modes.len() < count && clear(&modes[..before], neighbour, t60) {
-            let amplitude = (amplitude * pow(10.0, -chance.uniform())).max(1e-3);
-            modes.push(Known(neighbour, t60, amplitude, phase(chance)));
+        let (before, t60) = (modes.len() - 1, t60 * (1.0 + 0.3 * random.unit()));
+        if random.unit() < 0.25 && modes.len() < count && clear(&modes[..before], neighbour, t60) {
+            let amplitude = (amplitude * pow(10.0, -random.unit())).max(1e-3);
+            modes.push(Known(neighbour, t60, amplitude, phase(random)));
         }
     }
     modes
@@ -82,18 +71,18 @@ fn body(count: usize, chance: &mut Chance) -> Vec<Known> {
 
 /// The sound of modes struck at sample 0, its peak at half of full scale, with noise `noise_db` relative to the
 /// strongest mode. Also returns the factor by which amplitudes were scaled and the noise's standard deviation.
-fn sound(modes: &[Known], seconds: f64, noise_db: f64, chance: &mut Chance) -> (Vec<f32>, f64, f64) {
+fn sound(modes: &[Known], seconds: f64, noise_db: f64, random: &mut Sequence) -> (Vec<f32>, f64, f64) {
     let mut samples = vec![0.0; (seconds * RATE) as usize];
     for Known(frequency, t60, amplitude, phase) in modes.iter().copied() {
         for (n, sample) in samples.iter_mut().enumerate() {
             let t = n as f64 / RATE;
-            *sample += amplitude * exp(-LN_60_DB * t / t60) * libm::sin(2.0 * PI * frequency * t + phase);
+            *sample += amplitude * exp(-LN_1000 * t / t60) * libm::sin(2.0 * PI * frequency * t + phase);
         }
     }
     let peak = samples.iter().fold(0.0_f64, |peak, sample| peak.max(sample.abs()));
     let strongest = modes.iter().map(|mode| mode.2).fold(0.0, f64::max);
     let (scale, deviation) = (0.5 / peak, 0.5 / peak * strongest * pow(10.0, noise_db / 20.0));
-    let noisy = samples.iter().map(|sample| (scale * sample + deviation * chance.normal()) as f32);
+    let noisy = samples.iter().map(|sample| (scale * sample + deviation * normal(random)) as f32);
     (noisy.collect(), scale, deviation)
 }
 
@@ -118,9 +107,9 @@ fn matched<'a>(known: &[Known], found: &'a [Mode]) -> (Vec<Option<&'a Mode>>, Ve
 
 fn clean_strikes(count: usize, seeds: std::ops::RangeInclusive<u64>) {
     for seed in seeds {
-        let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
-        let known = body(count, &mut chance);
-        let (samples, scale, _) = sound(&known, 2.0, -400.0, &mut chance);
+        let mut random = Sequence::new(key(seed, 0));
+        let known = body(count, &mut random);
+        let (samples, scale, _) = sound(&known, 2.0, -400.0, &mut random);
         let found = taken_apart(samples);
         let strike = &found.strikes[0];
         let (pairs, spurious) = matched(&known, &strike.modes);
@@ -164,7 +153,7 @@ struct Bound {
 }
 
 fn bounds(known: &[Known], scale: f64, deviation: f64) -> Vec<Bound> {
-    let pole = |known: &Known| Pole { decay: LN_60_DB / (known.1 * RATE), theta: 2.0 * PI * known.0 / RATE };
+    let pole = |known: &Known| Pole { decay: LN_1000 / (known.1 * RATE), theta: 2.0 * PI * known.0 / RATE };
     let poles: Vec<Pole> = known.iter().map(pole).collect();
     let mut samples = vec![0.0; (2.0 * RATE) as usize];
     for (known, pole) in known.iter().zip(&poles) {
@@ -189,9 +178,9 @@ fn bounds(known: &[Known], scale: f64, deviation: f64) -> Vec<Bound> {
 /// Returns the errors in cents and in shares of T60 of the modes at least 6 dB above the floor, and descriptions of
 /// those that were not found, or not as exactly as 0.5 cents, 5 % and the bound require.
 fn noisy_strike(count: usize, seed: u64) -> (Vec<f64>, Vec<f64>, Vec<String>) {
-    let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
-    let known = body(count, &mut chance);
-    let (samples, scale, deviation) = sound(&known, 2.0, -60.0, &mut chance);
+    let mut random = Sequence::new(key(seed, 0));
+    let known = body(count, &mut random);
+    let (samples, scale, deviation) = sound(&known, 2.0, -60.0, &mut random);
     let found = taken_apart(samples);
     let (pairs, spurious) = matched(&known, &found.strikes[0].modes);
     let (mut pitch, mut decay, mut missed) = (Vec::new(), Vec::new(), Vec::new());
@@ -256,7 +245,7 @@ fn a_pair_is_told_from_a_decay_in_two_stages() {
         Known(900.0, 0.4, 0.4, 0.0),
         Known(900.3, 3.0, 0.08, 0.4),
     ];
-    let found = taken_apart(sound(&known, 2.0, -300.0, &mut Chance(7)).0);
+    let found = taken_apart(sound(&known, 2.0, -300.0, &mut Sequence::new(7)).0);
     let kinds: Vec<_> = found.strikes[0].groups.iter().map(|group| (group.kind, group.modes.clone())).collect();
     assert_eq!(kinds, [(Kind::SplitPair, vec![0, 1]), (Kind::TwoStageDecay, vec![2, 3])]);
 }
@@ -264,7 +253,7 @@ fn a_pair_is_told_from_a_decay_in_two_stages() {
 #[test]
 fn a_late_onset_a_constant_and_a_second_channel_change_nothing() {
     let known = [Known(300.0, 0.8, 0.5, 0.4), Known(1234.5, 0.5, 0.25, -1.0)];
-    let (strike, scale, _) = sound(&known, 1.0, -300.0, &mut Chance(7));
+    let (strike, scale, _) = sound(&known, 1.0, -300.0, &mut Sequence::new(7));
     let mut late = vec![0.1_f32; 12_345];
     late.extend(strike.iter().map(|sample| sample + 0.1));
     let quiet: Vec<f32> = late.iter().map(|sample| 0.5 * sample).collect();
@@ -282,8 +271,8 @@ fn a_late_onset_a_constant_and_a_second_channel_change_nothing() {
 #[test]
 fn what_rings_on_is_no_part_of_the_next_strike() {
     let (first, second) = ([Known(300.0, 3.0, 0.5, 0.0)], [Known(300.0, 3.0, 0.5, 0.0), Known(800.0, 1.0, 0.7, 0.2)]);
-    let mut samples = sound(&first, 2.0, -300.0, &mut Chance(7)).0;
-    let (next, scale, _) = sound(&second, 1.0, -300.0, &mut Chance(7));
+    let mut samples = sound(&first, 2.0, -300.0, &mut Sequence::new(7)).0;
+    let (next, scale, _) = sound(&second, 1.0, -300.0, &mut Sequence::new(7));
     samples[48_000..].iter_mut().zip(&next).for_each(|(sample, next)| *sample += 2.0 * next);
     let settings = Settings { all_strikes: true, ..Settings::default() };
     let found = modes(&[samples.clone(), samples], RATE, &settings, &mut |_| true).unwrap();
@@ -315,13 +304,13 @@ fn what_cannot_be_taken_apart_is_refused_or_warned_of() {
     let unequal = modes(&[vec![0.5; 5000], vec![0.5; 4000]], RATE, &Settings::default(), &mut |_| true);
     let message = "sound: its channels differ in length: expected as many samples in each";
     assert_eq!(unequal.unwrap_err().to_string(), message);
-    let mut chance = Chance(5);
-    let noise = (0..24_000).map(|_| (0.1 * chance.normal()) as f32).collect();
+    let mut random = Sequence::new(5);
+    let noise = (0..24_000).map(|_| (0.1 * normal(&mut random)) as f32).collect();
     let found = try_with(noise).unwrap();
     assert!(found.warnings.iter().any(|warning| warning.contains("explain little of it")), "{:?}", found.warnings);
     assert!(found.strikes[0].modes.len() < 4, "{:?}", found.strikes[0].modes);
 
-    let (loud, ..) = sound(&[Known(300.0, 1.0, 1.0, 0.0)], 0.5, -300.0, &mut chance);
+    let (loud, ..) = sound(&[Known(300.0, 1.0, 1.0, 0.0)], 0.5, -300.0, &mut random);
     let clipped: Vec<f32> = loud.iter().take(9600).map(|sample| (4.0 * sample).clamp(-1.0, 1.0)).collect();
     // A sound that is no sum of modes would get more modes than are allowed.
     let few = Settings { most_modes: 24, ..Settings::default() };

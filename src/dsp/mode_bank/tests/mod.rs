@@ -306,12 +306,14 @@ fn a_copy_with_another_state_goes_on_from_it() {
     for ticks in [1, 40] {
         let mut whole = bank(&[(440.0, 1.0)]);
         run(&mut whole, ticks * CONTROL_FRAMES, Some(&strike()));
-        let mut part = whole.with_state_of(&whole);
+        let mut part = whole.clone();
+        part.take_state_of(&whole);
         for frames in [5, CONTROL_FRAMES - 5, 7] {
             if frames == 5 || frames == 7 {
                 whole.sweep_to(1.0, CONTROL_FRAMES);
             }
-            part = whole.with_state_of(&part);
+            let before = std::mem::replace(&mut part, whole.clone());
+            part.take_state_of(&before);
             let expected = whole.render(None, frames)[0].to_vec();
             let found = part.render(Some(&Drive::NONE), frames)[0];
             let worst = expected.iter().zip(found).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);

@@ -164,7 +164,7 @@ impl Resonator {
     }
 
     /// The sample rate in Hz.
-    pub fn sample_rate(&self) -> f64 {
+    pub(crate) fn sample_rate(&self) -> f64 {
         self.sample_rate
     }
 
@@ -179,7 +179,7 @@ impl Resonator {
     }
 
     /// The decay, or its target during a change.
-    pub fn decay(&self) -> Decay {
+    pub(crate) fn decay(&self) -> Decay {
         self.decay
     }
 

@@ -1,7 +1,7 @@
 //! Compares bodies with banks in double precision, which step every mode at every frame.
 
 use super::*;
-use crate::dsp::random::{key, uniform};
+use crate::dsp::random::{Sequence, key, uniform};
 use crate::dsp::space::{BodyMode, Plate, Room, Spring, Strings};
 use libm::{cos, exp, exp2, log10, sin};
 use std::f64::consts::{LN_10, TAU};
@@ -69,27 +69,20 @@ fn difference(modes: &ModeSet, decay: Decay, pitch: f64, rate: f64, input: &[f32
 }
 
 /// A random body of some hundred modes.
-fn random_body(next: &mut dyn FnMut() -> f64) -> ModeSet {
+fn random_body(random: &mut Sequence) -> ModeSet {
+    let mut next = || f64::from(random.uniform());
     let count = 16 + (200.0 * (1.0 + next())) as usize;
     let mode =
         |_| BodyMode { frequency: 20.0 * exp2(5.0 * (1.0 + next())), drive: next(), left: next(), right: next() };
     ModeSet::new((0..count).map(mode).collect::<Vec<_>>())
 }
 
-/// A sequence of random numbers from −1 to 1.
-fn numbers(seed: u64) -> impl FnMut() -> f64 {
-    let (stream, mut n) = (key(19, seed), 0);
-    move || {
-        n += 1;
-        f64::from(uniform(stream, n))
-    }
-}
-
 #[test]
 fn random_bodies_are_exact() {
     for seed in 0..24 {
-        let mut next = numbers(seed);
-        let modes = random_body(&mut next);
+        let mut random = Sequence::new(key(19, seed));
+        let modes = random_body(&mut random);
+        let mut next = || f64::from(random.uniform());
         // All of the range.
         let mut t60 = || 0.05 * exp2(4.6 * (1.0 + next()));
         let decay = Decay { low: t60(), high: t60() };
@@ -114,7 +107,7 @@ fn a_plate_is_exact() {
 #[test]
 fn moved_bodies_are_those_made_so() {
     for (pitch, low) in [(1.0, 0.2), (1.9, 1.0), (0.4, 0.1), (30.0, 2.0)] {
-        let (modes, decay) = (random_body(&mut numbers(3)), Decay { low, high: 0.3 });
+        let (modes, decay) = (random_body(&mut Sequence::new(key(19, 3))), Decay { low, high: 0.3 });
         let mut made = Resonator::new(&modes, decay, 48_000.0);
         made.tune(pitch);
         let mut moved = Resonator::new(&modes, Decay { low: 1.0, high: 1.0 }, 48_000.0);

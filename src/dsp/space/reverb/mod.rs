@@ -178,7 +178,7 @@ impl ModalReverb {
     }
 
     /// Whether it is off and no level is moving: the signal is not changed.
-    pub fn is_off(&self) -> bool {
+    pub(crate) fn is_off(&self) -> bool {
         self.state == State::Off && self.dry.rests_at(1.0)
     }
 

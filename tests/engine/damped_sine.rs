@@ -7,7 +7,7 @@ use libm::{acos, atan2, exp, hypot, log, sincos, sqrt};
 use std::f64::consts::PI;
 
 /// ln 1000: the decay exponent of 60 dB.
-pub(super) const LN_60_DB: f64 = 6.907_755_278_982_137;
+pub(crate) const LN_60_DB: f64 = 6.907_755_278_982_137;
 /// Samples after which the recurrence for `zⁿ` starts from an exact power again.
 const ANCHOR: usize = 1024;
 /// Samples from which a start is found without a guess: seven cycles of 20 Hz at 192 kHz.
@@ -15,17 +15,17 @@ const START_LENGTH: usize = 65_536;
 
 /// `amplitude · 0.001^(t / t60) · sin(2π · frequency · t + phase)`, with `t` in seconds from the first sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DampedSine {
+pub(crate) struct DampedSine {
     /// Hz.
-    pub frequency: f64,
+    pub(crate) frequency: f64,
     /// Seconds in which the amplitude falls by 60 dB; infinite if it does not fall.
-    pub t60: f64,
+    pub(crate) t60: f64,
     /// At the first sample.
-    pub amplitude: f64,
+    pub(crate) amplitude: f64,
     /// Radians at the first sample, −π to π.
-    pub phase: f64,
+    pub(crate) phase: f64,
     /// Level of the residual, in dB relative to the signal's RMS.
-    pub residual_db: f64,
+    pub(crate) residual_db: f64,
 }
 
 /// Fits a damped sinusoid to all of `samples`, from a start within a few per cent of the truth.
@@ -33,7 +33,7 @@ pub struct DampedSine {
 /// The fit begins with some twenty cycles and doubles the stretch until it covers everything, since the phase of the
 /// guess would be wrong after more cycles. Clean data of at least one cycle resolves frequency to 10⁻⁶ cents and T60 to
 /// 10⁻⁸. `None` for fewer than eight samples, silence, samples that are not finite and fits that do not converge.
-pub fn fit<T: Copy + Into<f64>>(
+pub(crate) fn fit<T: Copy + Into<f64>>(
     samples: &[T],
     sample_rate: f64,
     frequency_guess: f64,
@@ -48,7 +48,7 @@ pub fn fit<T: Copy + Into<f64>>(
 }
 
 /// Fits a damped sinusoid of unknown frequency and T60 to all of `samples`; `None` as for [`fit`].
-pub fn fit_unknown<T: Copy + Into<f64>>(samples: &[T], sample_rate: f64) -> Option<DampedSine> {
+pub(crate) fn fit_unknown<T: Copy + Into<f64>>(samples: &[T], sample_rate: f64) -> Option<DampedSine> {
     refine(samples, sample_rate, linear_prediction(&samples[..samples.len().min(START_LENGTH)])?)
 }
 
