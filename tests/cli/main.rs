@@ -14,12 +14,14 @@ mod listings;
 mod messages;
 mod mpe;
 mod outputs;
+mod passages;
 #[cfg(unix)]
 mod recipes;
 mod recordings;
 mod signals;
 mod songs;
 mod sound;
+mod stems;
 mod tuning;
 
 use assert_cmd::Command;
