@@ -18,6 +18,7 @@ mod passages;
 #[cfg(unix)]
 mod recipes;
 mod recordings;
+mod samples;
 mod signals;
 mod songs;
 mod sound;
