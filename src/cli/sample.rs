@@ -19,7 +19,7 @@ use std::sync::Mutex;
 pub(super) const EXAMPLES: &str = "\
 Examples:
   sprung sample Marimba -o marimba
-  sprung sample \"Acoustic Kit\" -o kit --velocities 4 --strikes 3 --format flac
+  sprung sample drums.toml -o drums --velocities 4 --strikes 3 --format flac
   sprung sample mine.toml -o mine --keys C2-C6 --every 2 --length 8
   sprung sample Marimba -o marimba --resume";
 

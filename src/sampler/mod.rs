@@ -1,5 +1,4 @@
-//! Makes sampler instruments of presets and kits: samples of keys, velocities and alternating strikes, with an SFZ and a
-//! DecentSampler file that play them.
+//! Sampler instruments of presets and kits: samples of keys, velocities and alternating strikes, with SFZ and DecentSampler files.
 //!
 //! Samples are as loud as the sound is, so the files switch the sampler's own response to velocity off. A loop is set only where the
 //! held sound is steady and comes back to itself; anything else is as long as asked for, and fades out there if it still sounds.

@@ -15,6 +15,8 @@ use crate::units::key_from_frequency;
 /// Most seconds that are compared, and those of the first look.
 const LONGEST: f64 = 3.0;
 const FIRST_LOOK: f64 = 0.4;
+/// Frames in which a played note begins.
+const LATE: usize = RATE as usize / 10;
 /// A4 in Hz with which a frequency becomes a key.
 const A4: f64 = 440.0;
 /// Velocity of the notes that are compared, as a fit has it for recordings that name none.
@@ -24,8 +26,10 @@ const VELOCITY: f64 = super::take::VELOCITY / 127.0;
 pub struct Model {
     bands: LogMel,
     frames: usize,
-    /// The key that is played, as a fractional MIDI key.
+    /// The key that was recorded, as a fractional MIDI key.
     pub key: f64,
+    /// Whether the key was estimated. Then it can be an octave off.
+    is_estimated: bool,
 }
 
 /// How near a preset is.
@@ -33,7 +37,7 @@ pub struct Model {
 pub struct Nearness {
     /// Distance in dB ([`crate::analysis::log_mel::distance`]), after both were made equally loud.
     pub distance: f64,
-    /// The key with which it is nearest: that of the recording, or the preset's home.
+    /// The key that it was played on.
     pub key: f64,
 }
 
@@ -50,30 +54,38 @@ impl Model {
             return Err(Error::format(name, "it is silent: expected a sound"));
         }
         sound.truncate((LONGEST * f64::from(RATE)) as usize);
-        let key = key.unwrap_or_else(|| estimated(&sound));
-        Ok(Self { bands: MelBands::new().measure(&sound), frames: sound.len(), key })
+        let (is_estimated, key) = (key.is_none(), key.unwrap_or_else(|| estimated(&sound)));
+        Ok(Self { bands: MelBands::new().measure(&sound), frames: sound.len(), key, is_estimated })
     }
 
-    /// How near a preset is at a first look, or at a whole one. Not real-time safe.
-    pub fn nearness(&self, preset: &Preset, is_whole: bool) -> Nearness {
-        let first = (FIRST_LOOK * f64::from(RATE)) as usize;
-        let frames = if is_whole { self.frames } else { self.frames.min(first) };
-        let wanted =
-            LogMel { columns: self.bands.columns[..frames.div_ceil(HOP).min(self.bands.columns.len())].to_vec() };
+    /// How near a preset is at a first look: on the key that comes nearest of the recording's, that an octave higher or lower if it was
+    /// estimated, and the preset's home. Not real-time safe.
+    pub fn first_look(&self, preset: &Preset) -> Nearness {
         let home = f64::from(preset.guide.home);
+        let octaves: &[f64] = if self.is_estimated { &[0.0, 12.0, -12.0] } else { &[0.0] };
         let follows = preset.patch.get(Param::KeyTrack) > 0.0;
-        let keys = [Some(self.key).filter(|_| follows), Some(home).filter(|home| !follows || *home != self.key)];
-        let at = |key: f64| {
-            let note = Played { key, velocity: VELOCITY, frames: frames + RATE as usize / 10, let_go: None };
-            let played = Audition::with_limiter().mean(&preset.patch, note);
-            let start = onset(&played);
-            let mut found = MelBands::new().measure(&played[start..(start + frames).min(played.len())]);
-            let louder = wanted.loudest() - found.loudest();
-            found.columns.iter_mut().flatten().for_each(|level| *level += louder);
-            Nearness { distance: wanted.distance(&found), key }
-        };
-        let all = keys.into_iter().flatten().map(at);
-        all.min_by(|a, b| a.distance.total_cmp(&b.distance)).unwrap_or(Nearness { distance: f64::INFINITY, key: home })
+        let own = octaves.iter().map(|octave| self.key + octave).filter(|key| follows && *key != home);
+        let frames = self.frames.min((FIRST_LOOK * f64::from(RATE)) as usize);
+        let all = own.chain([home]).map(|key| self.at(preset, key, frames));
+        let none = Nearness { distance: f64::INFINITY, key: home };
+        all.fold(none, |best, other| if other.distance < best.distance { other } else { best })
+    }
+
+    /// How near a preset is on a key, over all that is compared. Not real-time safe.
+    pub fn nearness(&self, preset: &Preset, key: f64) -> Nearness {
+        self.at(preset, key, self.frames)
+    }
+
+    fn at(&self, preset: &Preset, key: f64, frames: usize) -> Nearness {
+        let count = frames.div_ceil(HOP).min(self.bands.columns.len());
+        let wanted = LogMel { columns: self.bands.columns[..count].to_vec() };
+        let note = Played { key, velocity: VELOCITY, frames: frames + LATE, let_go: None };
+        let played = Audition::with_limiter().mean(&preset.patch, note);
+        let start = onset(&played);
+        let mut found = MelBands::new().measure(&played[start..(start + frames).min(played.len())]);
+        let louder = wanted.loudest() - found.loudest();
+        found.columns.iter_mut().flatten().for_each(|level| *level += louder);
+        Nearness { distance: wanted.distance(&found), key }
     }
 }
 
@@ -107,10 +119,15 @@ mod tests {
     fn a_preset_is_nearest_to_its_own_sound_however_loud() {
         for (name, key) in [("Marimba", 60.0), ("Church Bell", 55.0), ("Steel Guitar", 52.0)] {
             let model = Model::new(&recorded(name, key, 0.1), "sound", Some(key)).unwrap();
-            let own = model.nearness(Preset::find(name).unwrap(), true);
+            let own = model.nearness(Preset::find(name).unwrap(), key);
             for other in ["Marimba", "Church Bell", "Steel Guitar", "Kick"].into_iter().filter(|other| *other != name) {
-                let other = model.nearness(Preset::find(other).unwrap(), true);
-                assert!(own.distance + 2.0 < other.distance, "{name}: {} and {}", own.distance, other.distance);
+                let other = model.first_look(Preset::find(other).unwrap());
+                assert!(
+                    own.distance + 2.0 < other.distance && own.distance < 2.0,
+                    "{name}: {} and {}",
+                    own.distance,
+                    other.distance
+                );
             }
         }
         let guessed = Model::new(&recorded("Marimba", 60.0, 1.0), "sound", None).unwrap();

@@ -53,16 +53,17 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     interrupt::catch(true)?;
     let (bar, done) = (Mutex::new(Bar::new()), AtomicUsize::new(0));
-    let all = presets.len() + LOOKED_AT.min(presets.len());
+    let work = presets.len() + LOOKED_AT.min(presets.len());
     let tick = || {
-        let share = (1 + done.fetch_add(1, Ordering::Relaxed)) as f64 / all as f64;
+        let share = (1 + done.fetch_add(1, Ordering::Relaxed)) as f64 / work as f64;
         bar.lock().map_or(Ok(()), |mut bar| if bar.show_share(share) { Ok(()) } else { Err(Error::Interrupted) })
     };
-    let first = ranked(&presets, false, &model, &tick)?;
-    let near: Vec<(&str, &Preset)> = first.iter().take(LOOKED_AT).map(|(index, _)| presets[*index]).collect();
-    let nearest = ranked(&near, true, &model, &tick)?;
+    let all: Vec<usize> = (0..presets.len()).collect();
+    let first = ranked(&all, |index| (*index, model.first_look(presets[*index].1)), &tick)?;
+    let again = |(index, first): &(usize, Nearness)| (*index, model.nearness(presets[*index].1, first.key));
+    let nearest = ranked(&first[..LOOKED_AT.min(first.len())], again, &tick)?;
     drop(bar);
-    let nearest = nearest.iter().take(args.count.into()).map(|(index, nearness)| (near[*index], *nearness));
+    let nearest = nearest.iter().take(args.count.into()).map(|(index, nearness)| (presets[*index], *nearness));
     if args.json {
         let described = nearest.map(|((family, preset), Nearness { distance, key })| {
             json!({ "name": preset.name, "family": family, "distance_db": distance, "key": key })
@@ -80,19 +81,17 @@ pub(super) fn run(args: &Args) -> Result<()> {
     print(&text)
 }
 
-/// The presets by how near they are, the nearest first. `tick` is called after each, and can end the work.
-fn ranked(
-    presets: &[(&str, &Preset)],
-    is_whole: bool,
-    model: &Model,
+/// Presets by how near they are, the nearest first. `tick` is called after each, and can end the work.
+fn ranked<T: Sync>(
+    presets: &[T],
+    near: impl Fn(&T) -> (usize, Nearness) + Sync,
     tick: &(dyn Fn() -> Result<()> + Sync),
 ) -> Result<Vec<(usize, Nearness)>> {
-    let places: Vec<usize> = (0..presets.len()).collect();
-    let near = |index: &usize| {
-        let nearness = model.nearness(presets[*index].1, is_whole);
-        tick().map(|()| (*index, nearness))
+    let near = |preset: &T| {
+        let found = near(preset);
+        tick().map(|()| found)
     };
-    let mut ranked = places.par_iter().map(near).collect::<Result<Vec<_>>>()?;
+    let mut ranked = presets.par_iter().map(near).collect::<Result<Vec<_>>>()?;
     ranked.sort_by(|a, b| a.1.distance.total_cmp(&b.1.distance).then(a.0.cmp(&b.0)));
     Ok(ranked)
 }
