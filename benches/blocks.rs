@@ -50,7 +50,7 @@ fn block_times(song: &Song) -> Vec<f64> {
                 Ok(())
             })
         });
-        timed.unwrap();
+        timed.unwrap().unwrap();
     }
     // No block is before the first, whose time includes that of the preparation.
     least.remove(0);

@@ -98,6 +98,8 @@ pub mod realtime;
 pub mod render;
 #[cfg(feature = "batch")]
 pub mod request;
+#[cfg(feature = "batch")]
+pub mod sampler;
 pub mod sound;
 pub mod text;
 pub mod units;

@@ -1,27 +1,15 @@
 //! Checks that a job fits its batch: its files and its sample format.
 
+use super::Batch;
 use super::manifest::{self, is_number};
 use super::template::Fault;
-use super::{Batch, FileFormat};
-use crate::io::{SampleFormat, flac};
 use crate::request::Request;
 use std::path::{Path, PathBuf};
 
 impl Batch {
     /// Returns an error for a job that the format of the files does not support.
     pub(super) fn check_format(&self, request: &Request) -> Result<(), Fault> {
-        let fault = |key: &str, message: String| Err((key.to_owned(), message));
-        match self.format {
-            FileFormat::Wav => Ok(()),
-            FileFormat::Flac if request.bits == SampleFormat::Float32 => {
-                fault("bits", "FLAC has no floats: expected 16 or 24, or --format wav".to_owned())
-            }
-            FileFormat::Flac if request.rate > flac::HIGHEST_RATE => {
-                let (rate, highest) = (request.rate, flac::HIGHEST_RATE);
-                fault("rate", format!("{rate} Hz is too high for FLAC: expected at most {highest} Hz, or --format wav"))
-            }
-            FileFormat::Flac => Ok(()),
-        }
+        self.format.check(request.bits, request.rate).map_err(|(key, message)| (key.to_owned(), message))
     }
 
     /// Returns a message if `input` is a file that a batch in this folder writes, now or later. Only the path matters:

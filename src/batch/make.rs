@@ -45,15 +45,13 @@ pub(super) fn make(task: &Task, batch: &Batch, check: &(dyn Fn() -> Result<()> +
         fs::create_dir_all(folder).map_err(|source| Error::io(folder.display().to_string(), source))?;
     }
     // A resumed batch replaces files that an interrupted run left. A new batch replaces nothing.
-    let create = || Output::create(&Target::Path(path.clone()), batch.resume, &inputs).map_err(is_there);
-    let mut output = create()?;
-    let made = to_labelled_wav(&job, &prepared.delivery, &mut output, |_: Progress| check());
-    let (report, labels) = made.map_err(located)?;
-    if batch.format == FileFormat::Flac {
-        // The WAV never gets a name: its temporary file is removed when it is dropped.
-        let (mut wav, name) = (std::mem::replace(&mut output, create()?), output.name().to_owned());
-        flac::encode(wav.stream(), output.stream(), &name).map_err(located)?;
+    let mut output = Output::create(&Target::Path(path), batch.resume, &inputs).map_err(is_there)?;
+    let render = |output: &mut Output| to_labelled_wav(&job, &prepared.delivery, output, |_: Progress| check());
+    let (report, labels) = match batch.format {
+        FileFormat::Wav => render(&mut output),
+        FileFormat::Flac => flac::through_wav(&mut output, render),
     }
+    .map_err(located)?;
     let sha256 = sha256_of(output.stream()).map_err(|source| Error::io(output.name(), source))?;
     output.commit().map_err(is_there)?;
     Ok(line(task, &job, &file, &sha256, &report, &labels, &warnings))

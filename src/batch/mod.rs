@@ -21,26 +21,8 @@ mod scalar;
 mod template;
 
 use crate::error::{Error, Result};
+pub use crate::io::FileFormat;
 use std::path::PathBuf;
-
-/// The format of the files of a batch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FileFormat {
-    /// WAV.
-    Wav,
-    /// FLAC, which stores the samples of the WAV in less space. It has no floats, and sample rates up to 96 kHz.
-    Flac,
-}
-
-impl FileFormat {
-    /// The extension of file names.
-    pub(crate) fn ending(self) -> &'static str {
-        match self {
-            Self::Wav => "wav",
-            Self::Flac => "flac",
-        }
-    }
-}
 
 /// One of several parts of a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

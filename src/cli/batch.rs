@@ -46,7 +46,7 @@ pub(super) struct Args {
         value_parser = quantity::whole::<u64>(0..=u64::MAX))]
     seed: u64,
     /// Format of the files
-    #[arg(long, default_value = "wav", value_name = "wav|flac", value_parser = format,
+    #[arg(long, default_value = "wav", value_name = "wav|flac", value_parser = quantity::file_format,
         add = completion::among(&["wav", "flac"]))]
     format: FileFormat,
 }
@@ -58,14 +58,6 @@ fn shard(text: &str) -> std::result::Result<Shard, String> {
         Error::Value { message, .. } => message,
         error => error.to_string(),
     })
-}
-
-fn format(text: &str) -> std::result::Result<FileFormat, String> {
-    match text {
-        "wav" => Ok(FileFormat::Wav),
-        "flac" => Ok(FileFormat::Flac),
-        _ => Err("expected wav or flac".to_owned()),
-    }
 }
 
 pub(super) fn run(args: &Args) -> ExitCode {

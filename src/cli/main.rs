@@ -17,6 +17,7 @@ mod presets;
 mod progress;
 mod recording;
 mod render;
+mod sample;
 mod song;
 mod sound;
 mod terminal;
@@ -51,6 +52,7 @@ Examples:
   sprung render song.mid -o song.wav
   sprung render --note C4 --preset Kick -o kick.wav
   sprung batch jobs.jsonl --out sounds
+  sprung sample Marimba -o marimba
   sprung presets list
   sprung params
   sprung manual
@@ -69,6 +71,9 @@ enum Command {
     /// Render thousands of sounds from a file of jobs, with exact labels
     #[command(after_help = batch::EXAMPLES)]
     Batch(batch::Args),
+    /// Make a sampler instrument of a preset or kit
+    #[command(after_help = sample::EXAMPLES)]
+    Sample(sample::Args),
     /// Play live: a MIDI file, a keyboard, or the terminal
     #[cfg(feature = "play")]
     #[command(after_help = play::EXAMPLES)]
@@ -140,6 +145,7 @@ fn execute(command: &Command) -> Result<()> {
              ‘sprung render’ writes a file",
         )),
         Command::Presets(args) => presets::run(args),
+        Command::Sample(args) => sample::run(args),
         Command::Params(args) => parameters::run(args),
         Command::Analyze(args) => analyze::run(args),
         Command::Fit(args) => fit::run(args),
@@ -189,6 +195,7 @@ mod tests {
             EXAMPLES,
             render::EXAMPLES,
             batch::EXAMPLES,
+            sample::EXAMPLES,
             presets::EXAMPLES,
             parameters::EXAMPLES,
             #[cfg(feature = "play")]

@@ -17,6 +17,10 @@ pub(super) struct SongArgs {
     #[arg(long, default_value_t = 0, value_name = "SEMITONES", requires = "song", allow_hyphen_values = true,
         value_parser = quantity::transpose)]
     transpose: i32,
+    /// Pattern of a file of type 2, whose tracks are patterns, from 1
+    #[arg(long, value_name = "N", requires = "song", allow_hyphen_values = true,
+        value_parser = quantity::whole::<u16>(1..=u16::MAX.into()))]
+    pattern: Option<u16>,
     /// Channels to hear alone, 1-16
     #[arg(long, value_name = "CHANNELS", value_delimiter = ',', requires = "song", value_parser = quantity::whole::<u8>(1..=16))]
     solo: Vec<u8>,
@@ -33,6 +37,8 @@ impl SongArgs {
             transpose: self.transpose,
             solo: self.solo.clone(),
             mute: self.mute.clone(),
+            pattern: self.pattern,
+            ..SongRequest::default()
         }
     }
 }

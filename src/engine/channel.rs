@@ -3,6 +3,8 @@
 use super::gain::StereoGain;
 use super::midi::{controller, seven_bits};
 use super::modulation::Positions;
+use super::portamento::{NoteGlide, Portamento};
+use crate::params::PlayMode;
 use crate::patch::routes::Source;
 
 /// The controllers of a channel, in the units that voices use. Real-time safe.
@@ -29,6 +31,11 @@ pub(crate) struct Channel {
     balance: f32,
     gain: StereoGain,
     registered: Registered,
+    portamento: Portamento,
+    /// Whether the legato footswitch is down.
+    legato: bool,
+    /// Whether mono mode or poly mode was chosen; none for the patch's mode.
+    mono: Option<bool>,
 }
 
 /// The registered parameters that a channel has: bend range, fine tuning and coarse tuning.
@@ -84,13 +91,20 @@ impl Channel {
             balance: 0.5,
             gain: StereoGain::new(sample_rate),
             registered: Registered::INITIAL,
+            portamento: Portamento::default(),
+            legato: false,
+            mono: None,
         }
     }
 
     /// Handles a controller at a value 0–1. The voice manager handles sustain, sostenuto and mode messages.
     pub(crate) fn control(&mut self, controller: u8, value: f32) {
         let data = seven_bits(value);
+        self.portamento.control(controller, value);
         match controller {
+            controller::LEGATO => self.legato = value >= 0.5,
+            controller::MONO => self.mono = Some(true),
+            controller::POLY => self.mono = Some(false),
             controller::WHEEL => self.wheel = value,
             controller::BREATH => self.breath = value,
             controller::SOFT => self.soft = value >= 0.5,
@@ -151,6 +165,21 @@ impl Channel {
         self.registered.number == (0, Registered::BEND_RANGE as u8)
     }
 
+    /// The glide of a note that starts now, if it is not its patch's.
+    pub(crate) fn glide(&mut self) -> Option<NoteGlide> {
+        self.portamento.start()
+    }
+
+    /// The mode that the channel's controllers have chosen; none for the patch's.
+    pub(crate) fn mode(&self) -> Option<PlayMode> {
+        match self.mono {
+            _ if self.legato => Some(PlayMode::Legato),
+            Some(true) => Some(PlayMode::Mono),
+            Some(false) => Some(PlayMode::Poly),
+            None => None,
+        }
+    }
+
     /// Tuning in semitones set by RPN 1 and 2.
     pub(crate) fn tuning(&self) -> f32 {
         self.registered.tuning()
@@ -164,6 +193,7 @@ impl Channel {
         self.pressure = 0.0;
         self.expression = 1.0;
         self.soft = false;
+        self.legato = false;
         self.registered.number = Registered::NONE;
     }
 

@@ -145,6 +145,15 @@ pub enum EventKind {
     },
     /// Sets the tempo in beats per minute, on all channels.
     Tempo(f32),
+    /// Gives a key of the channel's instrument another pitch, as MIDI Tuning Standard does. Sounds with a tuning of their own keep it.
+    Tune {
+        /// MIDI key, 0–127.
+        key: u8,
+        /// 0–128, in semitones on the MIDI scale: 69 is A4.
+        pitch: f32,
+        /// Whether notes of the key that sound now follow, or only later ones have the pitch.
+        sounding: bool,
+    },
     /// Silences all notes of a choke group (sent between the channels of an ensemble).
     Choke {
         /// 1–16; 0 silences nothing.

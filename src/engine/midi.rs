@@ -8,6 +8,8 @@ pub mod controller {
     pub(crate) const WHEEL: u8 = 1;
     /// Breath.
     pub(crate) const BREATH: u8 = 2;
+    /// Portamento time.
+    pub(crate) const PORTAMENTO_TIME: u8 = 5;
     /// Data entry for the selected registered parameter, most significant seven bits.
     pub(crate) const DATA: u8 = 6;
     /// Channel volume.
@@ -22,12 +24,18 @@ pub mod controller {
     pub(crate) const DATA_FINE: u8 = 38;
     /// Sustain pedal.
     pub(crate) const SUSTAIN: u8 = 64;
+    /// Portamento on or off.
+    pub(crate) const PORTAMENTO: u8 = 65;
     /// Sostenuto pedal.
     pub(crate) const SOSTENUTO: u8 = 66;
     /// Soft pedal.
     pub(crate) const SOFT: u8 = 67;
+    /// Legato footswitch: one voice at a time, which moves from key to key without a strike.
+    pub(crate) const LEGATO: u8 = 68;
     /// Brightness.
     pub(crate) const BRIGHTNESS: u8 = 74;
+    /// The key that the next note glides from.
+    pub(crate) const PORTAMENTO_CONTROL: u8 = 84;
     /// How much of a channel is sent to the space that a song's channels share.
     pub const REVERB_SEND: u8 = 91;
     /// Raises the selected registered parameter by a step.
@@ -48,6 +56,10 @@ pub mod controller {
     pub(crate) const RESET: u8 = 121;
     /// All notes off. The mode messages 124–127 do the same.
     pub(crate) const ALL_NOTES_OFF: u8 = 123;
+    /// Mono mode: one voice at a time.
+    pub(crate) const MONO: u8 = 126;
+    /// Poly mode.
+    pub(crate) const POLY: u8 = 127;
 }
 
 /// The value of [`controller::REVERB_SEND`] at the start and after a system reset (General MIDI 2, 1999).

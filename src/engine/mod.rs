@@ -31,6 +31,7 @@ mod knobs;
 pub mod midi;
 mod modulation;
 pub mod note;
+mod portamento;
 pub(crate) mod pressed;
 pub mod scope;
 pub mod snapshot;
@@ -43,11 +44,14 @@ pub mod voice_state;
 mod zones;
 
 pub use ensemble::Ensemble;
+pub(crate) use ensemble::Stems;
 pub use event::{Event, EventKind, Expression};
 #[cfg(feature = "fit")]
 pub(crate) use modulation::Lfo;
 pub use note::{Note, NoteId, Notes};
 pub use snapshot::{Snapshot, SoundingNote};
+pub(crate) use synth::PadGroup;
 pub use synth::Synth;
 pub use telemetry::{Telemetry, TelemetryWriter};
 pub(crate) use voice_state::{ModeState, VoiceState};
+pub(crate) use zones::Owners;

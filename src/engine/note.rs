@@ -1,5 +1,6 @@
 //! A note as voices receive it, and how events select notes.
 
+use super::portamento::NoteGlide;
 use crate::sound::Contact;
 use crate::sound::tuning::Pitch;
 
@@ -53,6 +54,8 @@ pub struct Note {
     pub pan: f32,
     /// Whether another key was down when the note began.
     pub is_legato: bool,
+    /// The glide that the channel's portamento gives it, in place of the patch's.
+    pub(crate) glide: Option<NoteGlide>,
     /// The hit of another body, if the note is one ([`EventKind::Strike`](super::EventKind::Strike)).
     pub contact: Option<Contact>,
 }
@@ -75,6 +78,7 @@ impl Note {
         gain: 1.0,
         pan: 0.0,
         is_legato: false,
+        glide: None,
         contact: None,
     };
 }

@@ -27,6 +27,33 @@ impl Bars {
         }
     }
 
+    /// The tick nearest to a beat of a bar, both from 1. The message says why there is none.
+    fn tick(&self, bar: u32, beat: f64) -> Result<u64, String> {
+        let Timing::Metrical(division) = self.timing else {
+            return Err("the song counts seconds, not bars: expected a time in seconds".to_owned());
+        };
+        let whole_note = 4.0 * f64::from(division.as_int().max(1));
+        let mut signatures = self.signatures.clone();
+        signatures.sort_by_key(|(start, ..)| *start);
+        let mut first = 1.0;
+        for (index, (start, beats, note)) in signatures.iter().enumerate() {
+            let length = whole_note / f64::from(1_u32 << note);
+            let next = signatures.get(index + 1).map(|(next, ..)| *next);
+            // A change inside a bar starts a new bar.
+            let bars = next.map_or(f64::INFINITY, |next| ((next - start) as f64 / (length * f64::from(*beats))).ceil());
+            if f64::from(bar) < first + bars {
+                if beat >= 1.0 + f64::from(*beats) {
+                    return Err(format!("bar {bar} has {beats} beats: expected 1 to {beats}"));
+                }
+                let beats_before = (f64::from(bar) - first) * f64::from(*beats) + (beat - 1.0);
+                let tick = start + (beats_before * length).round() as u64;
+                return Ok(next.map_or(tick, |next| tick.min(next)));
+            }
+            first += bars;
+        }
+        Err(format!("there is no bar {bar}"))
+    }
+
     /// The place of a tick, such as `bar 3, beat 2`, counted from 1; or `2.5 s` if ticks are parts of a second.
     pub(super) fn place(&self, tick: u64) -> String {
         let Timing::Metrical(division) = self.timing else {
@@ -48,6 +75,36 @@ impl Bars {
             bars += if index + 1 < signatures.len() { passed.div_ceil(bar) } else { passed / bar };
         }
         format!("bar {}, beat {}", bars + 1, beat + 1)
+    }
+}
+
+/// A time in a song, as people name it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SongTime {
+    /// Seconds from the start.
+    Seconds(f64),
+    /// A bar and a beat in it, both from 1.
+    Bar {
+        /// The bar.
+        bar: u32,
+        /// The beat, which can be a fraction.
+        beat: f64,
+    },
+}
+
+/// The bars of a whole song, and the times of its ticks.
+pub(crate) struct Places {
+    pub(super) bars: Bars,
+    pub(super) tempos: TempoMap,
+}
+
+impl Places {
+    /// Seconds from the start of the song. The message says why there is no such time.
+    pub(crate) fn seconds(&self, time: SongTime) -> Result<f64, String> {
+        match time {
+            SongTime::Seconds(seconds) => Ok(seconds),
+            SongTime::Bar { bar, beat } => self.bars.tick(bar, beat).map(|tick| self.tempos.seconds(tick)),
+        }
     }
 }
 
@@ -81,6 +138,22 @@ mod tests {
         ] {
             assert_eq!(bars.place(tick), place, "{tick}");
         }
+    }
+
+    #[test]
+    fn bars_and_beats_become_the_ticks_that_they_come_from() {
+        let mut bars = Bars::new(Timing::Metrical(96.into()));
+        bars.change(768, 6, 3);
+        bars.change(768 + 2 * 288 + 100, 5, 2);
+        for (bar, beat, tick) in
+            [(1, 1.0, 0), (2, 4.5, 720), (3, 1.0, 768), (4, 6.0, 768 + 288 + 240), (5, 3.0, 1440), (6, 2.0, 1540)]
+        {
+            assert_eq!(bars.tick(bar, beat), Ok(tick), "bar {bar}, beat {beat}");
+            let place = format!("bar {bar}, beat {}", beat.floor());
+            assert!(bars.place(tick) == place || beat == 3.0, "{place}");
+        }
+        assert_eq!(bars.tick(2, 5.0), Err("bar 2 has 4 beats: expected 1 to 4".to_owned()));
+        assert!(Bars::new(Timing::Timecode(Fps::Fps25, 40)).tick(1, 1.0).is_err());
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Turns WAV files of integers into FLAC files.
 
+use super::file_format::HIGHEST_RATE;
+use super::output::Output;
 use crate::error::{Error, Result};
 use flacenc::bitsink::ByteSink;
 use flacenc::component::{BitRepr, Stream};
@@ -12,8 +14,24 @@ use std::io::{BufReader, BufWriter, Seek, SeekFrom, Write};
 /// Frames per block.
 const BLOCK: usize = 4096;
 
-/// Highest sample rate in Hz that the encoder accepts.
-pub(crate) const HIGHEST_RATE: u32 = 96_000;
+/// Lets `write` write a WAV file that never gets a name, and encodes it into `output`, which need not be seekable.
+///
+/// # Errors
+/// Those of `write`; [`Error::Value`] for floats and for rates above 96 kHz, [`Error::Io`].
+pub fn through_wav<T>(output: &mut Output, write: impl FnOnce(&mut Output) -> Result<T>) -> Result<T> {
+    let mut wav = output.scratch()?;
+    let written = write(&mut wav)?;
+    let name = output.name().to_owned();
+    if output.is_seekable() {
+        encode(wav.stream(), output.stream(), &name)?;
+        return Ok(written);
+    }
+    // The header has the length and a checksum of all samples, so it is written last.
+    let mut whole = output.scratch()?;
+    encode(wav.stream(), whole.stream(), &name)?;
+    let copied = whole.stream().seek(SeekFrom::Start(0)).and_then(|_| std::io::copy(whole.stream(), output.stream()));
+    copied.map(|_| written).map_err(|source| Error::io(name, source))
+}
 
 /// Encodes the WAV file `wav`, of 16- or 24-bit integers and less than 4 GiB, into the empty file `out`. `name` is used
 /// in errors. The samples decode unchanged. The same WAV gives the same bytes on every machine: predictors are fixed
@@ -21,7 +39,7 @@ pub(crate) const HIGHEST_RATE: u32 = 96_000;
 ///
 /// # Errors
 /// [`Error::Value`] for floats and for rates above [`HIGHEST_RATE`], [`Error::Io`] if reading or writing fails.
-pub(crate) fn encode(wav: &mut File, out: &mut File, name: &str) -> Result<()> {
+pub fn encode(wav: &mut File, out: &mut File, name: &str) -> Result<()> {
     let failed = |source| Error::io(name, source);
     wav.seek(SeekFrom::Start(0)).map_err(failed)?;
     let reader = hound::WavReader::new(BufReader::new(wav)).map_err(|error| wrong(name, error))?;

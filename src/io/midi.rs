@@ -1,24 +1,67 @@
-//! Reads Standard MIDI Files (types 0 and 1) as songs: events in order of time.
+//! Reads Standard MIDI Files (types 0 and 1, and patterns of type 2) as songs: events in order of time.
 
 mod container;
 mod fault;
+mod limits;
 mod master_volume;
 mod reader;
 mod simultaneous;
 mod system_exclusive;
+mod tuning_standard;
+mod unheeded;
 
+use super::bars::Places;
 use super::song::{Song, SongEvent};
 use super::tempo::TempoMap;
 use crate::engine::EventKind;
 use crate::error::Error;
 use container::Container;
+use midly::{Format, Header};
 use reader::TrackReader;
 use std::io::Read;
 
-pub use reader::MAX_EVENTS;
+pub use limits::MAX_EVENTS;
 
 /// Maximum size of a MIDI file in bytes.
 pub const MAX_FILE_SIZE: u64 = 64 << 20;
+
+/// How a MIDI file is read.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Reading {
+    /// Whether to repair known faults.
+    pub(crate) lenient: bool,
+    /// The pattern of a file of type 2, from 1.
+    pub(crate) pattern: Option<u16>,
+}
+
+/// What a MIDI file has.
+pub(crate) struct MidiFile {
+    pub(crate) song: Song,
+    /// Descriptions of the repairs.
+    pub(crate) repairs: Vec<String>,
+    /// A warning of what is not obeyed.
+    pub(crate) unheeded: Option<String>,
+    pub(crate) places: Places,
+}
+
+impl MidiFile {
+    /// Reads a MIDI file to its end. `origin` names it in errors.
+    ///
+    /// # Errors
+    /// As [`Song::read`].
+    pub(crate) fn read(reader: impl Read, origin: &str, reading: Reading) -> crate::Result<Self> {
+        Self::parse(&read_file(reader, origin)?, origin, reading)
+    }
+
+    fn parse(bytes: &[u8], origin: &str, reading: Reading) -> crate::Result<Self> {
+        parse(bytes, reading).map_err(|mut message| {
+            if !reading.lenient && parse(bytes, Reading { lenient: true, ..reading }).is_ok() {
+                message += "; add --lenient to read it nevertheless";
+            }
+            Error::format(origin, message)
+        })
+    }
+}
 
 impl Song {
     /// Reads a MIDI file to its end. `origin` names it in errors.
@@ -27,15 +70,7 @@ impl Song {
     /// [`Error::Io`] if reading fails; [`Error::Format`] if the file is larger than [`MAX_FILE_SIZE`], or as
     /// [`Song::parse`].
     pub fn read(reader: impl Read, origin: &str) -> crate::Result<Self> {
-        Self::parse(&read_file(reader, origin)?, origin)
-    }
-
-    /// As [`Song::read`], but with [`Song::parse_leniently`].
-    ///
-    /// # Errors
-    /// As [`Song::read`].
-    pub(crate) fn read_leniently(reader: impl Read, origin: &str) -> crate::Result<(Self, Vec<String>)> {
-        Self::parse_leniently(&read_file(reader, origin)?, origin)
+        Ok(MidiFile::read(reader, origin, Reading::default())?.song)
     }
 
     /// Reads the bytes of a MIDI file of type 0 or 1. `origin` names it in errors.
@@ -47,12 +82,7 @@ impl Song {
     /// # Errors
     /// [`Error::Format`]. The message says so if `Song::parse_leniently` could read the file.
     pub fn parse(bytes: &[u8], origin: &str) -> crate::Result<Self> {
-        parse(bytes, false).map(|(song, _)| song).map_err(|mut message| {
-            if parse(bytes, true).is_ok() {
-                message += "; add --lenient to read it nevertheless";
-            }
-            Error::format(origin, message)
-        })
+        Ok(MidiFile::parse(bytes, origin, Reading::default())?.song)
     }
 
     /// As [`Song::parse`], but repairs known faults, and returns a description of each. Running status continues after
@@ -63,8 +93,9 @@ impl Song {
     ///
     /// # Errors
     /// [`Error::Format`] for all other faults.
-    pub(crate) fn parse_leniently(bytes: &[u8], origin: &str) -> crate::Result<(Self, Vec<String>)> {
-        parse(bytes, true).map_err(|message| Error::format(origin, message))
+    pub fn parse_leniently(bytes: &[u8], origin: &str) -> crate::Result<(Self, Vec<String>)> {
+        let file = MidiFile::parse(bytes, origin, Reading { lenient: true, pattern: None })?;
+        Ok((file.song, file.repairs))
     }
 }
 
@@ -78,17 +109,20 @@ fn read_file(reader: impl Read, origin: &str) -> crate::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Returns the song, and descriptions of the repairs.
-fn parse(bytes: &[u8], lenient: bool) -> Result<(Song, Vec<String>), String> {
-    let Container { header, tracks, mut repairs } = Container::open(bytes, lenient)?;
+fn parse(bytes: &[u8], Reading { lenient, pattern }: Reading) -> Result<MidiFile, String> {
+    let Container { header, mut tracks, mut repairs } = Container::open(bytes, lenient)?;
+    let first = pattern_track(&header, tracks.len(), pattern)?;
     // Check the division first, since the places in later errors depend on it.
     TempoMap::new(header.timing, &[])?;
     let mut reader = TrackReader::new(header.timing, lenient);
-    for (track, number) in tracks.iter().zip(1..) {
+    if let Some(only) = first {
+        tracks = tracks.drain(only..=only).collect();
+    }
+    for (track, number) in tracks.iter().zip(1 + first.unwrap_or(0)..) {
         reader.read(track, number)?;
     }
-    let TrackReader { mut events, mut tempos, last_tick, .. } = reader;
     repairs.extend(reader.repairs.iter().map(ToString::to_string));
+    let TrackReader { mut events, mut tempos, mut tunings, unheeded, last_tick, bars, .. } = reader;
     // Stable sorts: at the same tick, tempo comes first, and the order of tracks and of events in a track stays.
     tempos.sort_by_key(|(tick, _)| *tick);
     let beats_per_minute = |tempo: u32| (6e7 / f64::from(tempo)) as f32;
@@ -97,9 +131,28 @@ fn parse(bytes: &[u8], lenient: bool) -> Result<(Song, Vec<String>), String> {
     events.sort_by_key(|(tick, ..)| *tick);
     simultaneous::release_before_strike(&mut events);
     let events = master_volume::spread(events)?;
+    tunings.sort_by_key(|(tick, _)| *tick);
+    let events = tuning_standard::spread(events, &tunings)?;
     let map = TempoMap::new(header.timing, &tempos)?;
     let timed = |(tick, channel, kind)| SongEvent { seconds: map.seconds(tick), channel, kind };
-    Ok((Song { events: events.into_iter().map(timed).collect(), seconds: map.seconds(last_tick) }, repairs))
+    let song = Song { events: events.into_iter().map(timed).collect(), seconds: map.seconds(last_tick) };
+    Ok(MidiFile { song, repairs, unheeded: unheeded.warning(), places: Places { bars, tempos: map } })
+}
+
+/// The index of the track that is the pattern asked for; none if all tracks are one song.
+fn pattern_track(header: &Header, tracks: usize, pattern: Option<u16>) -> Result<Option<usize>, String> {
+    match (header.format, pattern) {
+        (Format::Sequential, Some(pattern)) if (1..=tracks).contains(&pattern.into()) => {
+            Ok(Some(usize::from(pattern) - 1))
+        }
+        (Format::Sequential, _) => {
+            Err(format!("a MIDI file of type 2, whose tracks are patterns: expected --pattern 1 to {tracks}"))
+        }
+        (_, Some(_)) => {
+            Err("only files of type 2 have patterns, and this is none: expected it without --pattern".to_owned())
+        }
+        (_, None) => Ok(None),
+    }
 }
 
 #[cfg(test)]

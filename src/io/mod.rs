@@ -2,6 +2,8 @@
 
 mod bars;
 #[cfg(feature = "batch")]
+mod file_format;
+#[cfg(feature = "batch")]
 pub mod flac;
 pub mod inputs;
 pub mod midi;
@@ -11,6 +13,8 @@ mod quantise;
 mod riff;
 #[cfg(feature = "render")]
 mod room;
+#[cfg(feature = "render")]
+mod sampler_chunk;
 pub mod song;
 mod song_cursor;
 #[cfg(feature = "fit")]
@@ -23,9 +27,15 @@ pub mod wav;
 #[cfg(feature = "render")]
 mod wav_format;
 
+pub use bars::SongTime;
+#[cfg(feature = "batch")]
+pub use file_format::FileFormat;
 pub use inputs::Inputs;
+pub(crate) use midi::{MidiFile, Reading};
 pub use output::Output;
 pub(crate) use quantise::quantise;
+#[cfg(feature = "render")]
+pub use sampler_chunk::Loop;
 pub use song::{Song, SongEvent};
 pub(crate) use song_cursor::{SILENCE_INTERVAL, SongCursor};
 pub use target::Target;

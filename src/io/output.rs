@@ -86,6 +86,19 @@ impl Output {
         self.pending.as_ref().map(|pending| &*pending.temporary)
     }
 
+    /// Another file to write first, in the same folder, or in the system's for temporary files if the output is written directly. It
+    /// never gets a name, and vanishes when it is dropped.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if it cannot be created.
+    pub fn scratch(&self) -> Result<Self> {
+        let folder = self.temporary().and_then(Path::parent).map_or_else(std::env::temp_dir, Path::to_owned);
+        let made = temporary::create_in(&folder).map_err(|error| in_folder(&folder, &error));
+        let (stream, temporary) = made.map_err(|source| Error::io(&self.name, source))?;
+        let pending = Some(Pending { temporary, target: PathBuf::new(), replace: false });
+        Ok(Self { name: self.name.clone(), stream, pending })
+    }
+
     /// The stream to write to.
     pub fn stream(&mut self) -> &mut File {
         &mut self.stream

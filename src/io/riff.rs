@@ -41,6 +41,11 @@ impl WavFormat {
 /// again when the number is known: a RIFF file has a `JUNK` chunk in the place where an RF64 file has its 64-bit sizes
 /// (`ds64`), as EBU Tech 3306 recommends.
 pub(super) fn header(format: &WavFormat, frames: u64) -> Vec<u8> {
+    header_with(format, frames, 0)
+}
+
+/// The header of a file that has further chunks after the samples, of so many bytes together.
+pub(super) fn header_with(format: &WavFormat, frames: u64, further: u64) -> Vec<u8> {
     // hound writes `RIFF`, its size, `WAVE`, the chunk `fmt `, `data` and its size.
     let plain = format.spec().into_header_for_infinite_file();
     let (riff, chunks) = plain.split_at(12);
@@ -48,7 +53,7 @@ pub(super) fn header(format: &WavFormat, frames: u64) -> Vec<u8> {
 
     let data_len = frames * format.frame_len();
     let header_len = plain.len() as u64 + 8 + u64::from(DS64_LEN);
-    let riff_len = header_len - RIFF_PREAMBLE + data_len + padding(data_len);
+    let riff_len = header_len - RIFF_PREAMBLE + data_len + padding(data_len) + further;
     let rf64 = riff_len >= u64::from(IN_DS64);
     let size = |len: u64| if rf64 { IN_DS64 } else { len as u32 };
 

@@ -73,6 +73,12 @@ impl Song {
         self.events.iter_mut().for_each(|event| event.kind = banks.resolve(event.channel, event.kind));
     }
 
+    /// Ends the song at a time in seconds, if it is longer. Events from there on are left out.
+    pub(crate) fn end_at(&mut self, seconds: f64) {
+        self.seconds = self.seconds.min(seconds);
+        self.events.truncate(self.events.partition_point(|event| event.seconds < seconds));
+    }
+
     /// The song's length in frames.
     pub(crate) fn frames(&self, sample_rate: f64) -> u64 {
         frames(self.seconds, sample_rate)

@@ -1,5 +1,7 @@
 //! Interprets the name of an output: standard output, or the file that a path leads to.
 
+#[cfg(feature = "batch")]
+use super::FileFormat;
 use crate::error::{Error, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -46,13 +48,45 @@ impl Target {
     /// # Errors
     /// [`Error::Value`] that says what would be right.
     pub fn check_wav(&self) -> Result<()> {
-        let Self::Path(path) = self else { return Ok(()) };
-        let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let ending = self.ending();
         if OTHER_FORMATS.contains(&ending.as_str()) {
             let message = format!("only WAV can be written, not .{ending}: expected a name that ends in .wav");
             return Err(Error::value(self.name(), message));
         }
         Ok(())
+    }
+
+    /// The extension of its name, in lower case; empty if it has none.
+    fn ending(&self) -> String {
+        match self {
+            Self::Stdout => String::new(),
+            Self::Path(path) => path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase(),
+        }
+    }
+
+    /// The format of a sound file with this name: the one that was asked for, or the one that its name says, or WAV.
+    ///
+    /// # Errors
+    /// [`Error::Value`] if the name has the extension of another format; it says what would be right.
+    #[cfg(feature = "batch")]
+    pub fn file_format(&self, asked: Option<FileFormat>) -> Result<FileFormat> {
+        let ending = self.ending();
+        let named = match ending.as_str() {
+            "flac" => Some(FileFormat::Flac),
+            "wav" | "wave" => Some(FileFormat::Wav),
+            _ => None,
+        };
+        match (asked, named) {
+            (Some(asked), Some(named)) if asked != named => {
+                let message = format!("--format {} does not go with this name: expected one of them", asked.ending());
+                Err(Error::value(self.name(), message))
+            }
+            (None, None) if OTHER_FORMATS.contains(&ending.as_str()) => {
+                let message = format!("only WAV and FLAC can be written, not .{ending}: expected .wav or .flac");
+                Err(Error::value(self.name(), message))
+            }
+            (asked, named) => Ok(asked.or(named).unwrap_or(FileFormat::Wav)),
+        }
     }
 }
 
@@ -96,6 +130,24 @@ mod tests {
         }
         for name in ["./-", "/dev/stderr", "/dev/fd/2", "1", "/dev/null", "out.wav"] {
             assert_eq!(Target::new(name), Target::Path(name.into()));
+        }
+    }
+
+    #[cfg(feature = "batch")]
+    #[test]
+    fn the_format_is_the_one_asked_for_or_named() {
+        use FileFormat::{Flac, Wav};
+        for (name, asked, format) in [
+            ("a.flac", None, Some(Flac)),
+            ("a.FLAC", None, Some(Flac)),
+            ("a", None, Some(Wav)),
+            ("-", None, Some(Wav)),
+            ("-", Some(Flac), Some(Flac)),
+            ("a.wav", Some(Flac), None),
+            ("a.flac", Some(Wav), None),
+            ("a.mp3", None, None),
+        ] {
+            assert_eq!(Target::new(name).file_format(asked).ok(), format, "{name}");
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::quantise::quantise;
 use super::riff;
+use super::sampler_chunk::{Loop, sampler_chunk};
 use super::wav_format::{SampleFormat, WavFormat};
 use crate::dsp::random;
 use crate::error::{Error, Result};
@@ -19,6 +20,8 @@ pub struct WavWriter<W: Write + Seek> {
     frames: u64,
     expected: Option<u64>,
     clipped: u64,
+    /// The chunks after the samples.
+    further: Vec<u8>,
 }
 
 impl<W: Write + Seek> WavWriter<W> {
@@ -28,10 +31,37 @@ impl<W: Write + Seek> WavWriter<W> {
     /// 1992). Floats are not rounded and get no noise.
     ///
     /// # Errors
-    /// [`Error::Io`] if the header cannot be written, [`Error::Value`] as `WavFormat::file_len`.
-    pub fn new(mut out: W, name: &str, format: WavFormat, dither: Option<u64>, frames: Option<u64>) -> Result<Self> {
+    /// [`Error::Io`] if the header cannot be written, [`Error::Value`] as [`WavFormat::file_len`].
+    pub fn new(out: W, name: &str, format: WavFormat, dither: Option<u64>, frames: Option<u64>) -> Result<Self> {
+        Self::open(out, name, format, dither, frames, Vec::new())
+    }
+
+    /// As [`WavWriter::new`], with a loop for samplers. The length must be known.
+    ///
+    /// # Errors
+    /// As [`WavWriter::new`].
+    pub fn looped(
+        out: W,
+        name: &str,
+        format: WavFormat,
+        dither: Option<u64>,
+        frames: u64,
+        looped: &Loop,
+    ) -> Result<Self> {
+        Self::open(out, name, format, dither, Some(frames), sampler_chunk(format.sample_rate, looped))
+    }
+
+    fn open(
+        mut out: W,
+        name: &str,
+        format: WavFormat,
+        dither: Option<u64>,
+        frames: Option<u64>,
+        further: Vec<u8>,
+    ) -> Result<Self> {
         format.file_len(frames.unwrap_or(0))?;
-        out.write_all(&riff::header(&format, frames.unwrap_or(0))).map_err(|source| Error::io(name, source))?;
+        let header = riff::header_with(&format, frames.unwrap_or(0), further.len() as u64);
+        out.write_all(&header).map_err(|source| Error::io(name, source))?;
         let dither = dither.map(|seed| [random::key(seed, 0), random::key(seed, 1)]);
         Ok(Self {
             out,
@@ -42,6 +72,7 @@ impl<W: Write + Seek> WavWriter<W> {
             frames: 0,
             expected: frames,
             clipped: 0,
+            further,
         })
     }
 
@@ -91,6 +122,7 @@ impl<W: Write + Seek> WavWriter<W> {
         if riff::padding(self.frames * self.format.frame_len()) == 1 {
             self.out.write_all(&[0])?;
         }
+        self.out.write_all(&self.further)?;
         if self.expected.is_none() {
             self.out.seek(SeekFrom::Start(0))?;
             self.out.write_all(&riff::header(&self.format, self.frames))?;

@@ -61,6 +61,8 @@ pub struct Job<'a> {
     /// Input sound from the first frame on, at the sample rate of the options. It drives the notes of sounds whose
     /// input level is above the minimum. Empty for none.
     pub input: &'a [f32],
+    /// Seconds at the beginning of the song that are not rendered. All messages in them are obeyed, but no note is played.
+    pub from: f64,
     /// The options.
     pub options: Options,
 }
@@ -82,12 +84,27 @@ pub struct Rendered {
 impl<'a> Job<'a> {
     /// A song that one kit plays on all channels, at equal temperament, without program changes and without input.
     pub fn new(song: &'a Song, kit: &'a Arc<Kit>, options: Options) -> Self {
-        Self { song, kit, channels: &[], programs: &[], mix: None, tuning: &Tuning::EQUAL, input: &[], options }
+        Self {
+            song,
+            kit,
+            channels: &[],
+            programs: &[],
+            mix: None,
+            tuning: &Tuning::EQUAL,
+            input: &[],
+            from: 0.0,
+            options,
+        }
     }
 
-    /// Length of the song alone, in frames.
+    /// Length of the song alone, in frames, from the place on at which the rendering begins.
     pub fn song_frames(&self) -> u64 {
-        self.song.frames(self.options.sample_rate.into())
+        self.song.frames(self.options.sample_rate.into()).saturating_sub(self.first_frame())
+    }
+
+    /// The frame of the song at which the rendering begins.
+    pub(super) fn first_frame(&self) -> u64 {
+        song::frames(self.from, self.options.sample_rate.into())
     }
 
     /// Length of the rendering in frames, unless it depends on the sound ([`Tail::Auto`]).

@@ -64,7 +64,8 @@ impl Labels {
     /// For a job that has not begun.
     pub(super) fn new(job: &Job) -> Self {
         let sample_rate = f64::from(job.options.sample_rate);
-        let frames = job.song.events.iter().map(|event| event.frame(sample_rate));
+        let first = job.first_frame();
+        let frames = job.song.events.iter().map(|event| event.frame(sample_rate).saturating_sub(first));
         let mut events: Vec<u64> = frames.chain([job.song_frames()]).collect();
         events.sort_by_key(|frame| Reverse(*frame));
         Self { events, frame: 0, all: BTreeMap::new(), open: BTreeSet::new() }

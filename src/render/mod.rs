@@ -13,7 +13,9 @@
 
 mod job;
 pub mod labels;
+mod looped;
 pub mod meter;
+mod stems;
 mod stream;
 #[cfg(test)]
 mod tests;
@@ -24,7 +26,9 @@ pub use crate::dsp::limiter::Work as LimiterWork;
 pub use crate::engine::synth::SAMPLE_RATES;
 pub use job::{BLOCKS, Job, Options, Rendered, Tail};
 pub(crate) use labels::{ModeLabel, NoteLabel};
+pub use looped::to_looped_wav;
 pub use meter::{Levels, Meter};
+pub use stems::{Stem, StemsReport, stems_of, to_stem_wavs};
 pub use threads::{THREADS, on_threads};
 pub(crate) use wav::to_labelled_wav;
 pub use wav::{Delivery, Level, Progress, Report, to_wav};

@@ -2,7 +2,7 @@
 
 use super::job::{Job, Rendered};
 use super::labels::Labels;
-use crate::engine::{Ensemble, Event};
+use crate::engine::{Ensemble, Event, EventKind, Owners, Stems};
 use crate::error::Result;
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
@@ -45,8 +45,7 @@ impl Job<'_> {
         mut labels: Option<&mut Labels>,
         mut sink: impl FnMut(&[f32], &[f32]) -> Result<()> + Send,
     ) -> Result<Rendered> {
-        self.options.check()?;
-        let mut stream = Stream::new(self);
+        let mut stream = Stream::new(self)?;
         if labels.is_some() {
             stream.ensemble.separate_strikes();
         }
@@ -71,6 +70,41 @@ impl Job<'_> {
     }
 }
 
+impl Job<'_> {
+    /// Renders without the limiter, and hands each block to `sink`. Also says whether the limiter would have been on.
+    pub(super) fn render_unlimited(
+        &self,
+        mut sink: impl FnMut(&[f32], &[f32]) -> Result<()>,
+    ) -> Result<(Rendered, bool)> {
+        let mut stream = Stream::new(self)?;
+        stream.ensemble.leave_unlimited();
+        let [mut left, mut right] = [vec![0.0; self.options.block], vec![0.0; self.options.block]];
+        loop {
+            match stream.fill(&mut left, &mut right) {
+                0 => return Ok((stream.rendered(), stream.ensemble.is_limiter_wanted())),
+                frames => sink(&left[..frames], &right[..frames])?,
+            }
+        }
+    }
+
+    /// Renders, and hands the stems of each block and its number of frames to `sink`.
+    pub(super) fn render_stems(&self, mut sink: impl FnMut(&Stems, usize) -> Result<()>) -> Result<Rendered> {
+        let mut stream = Stream::new(self)?;
+        stream.ensemble.keep_stems();
+        let [mut left, mut right] = [vec![0.0; self.options.block], vec![0.0; self.options.block]];
+        loop {
+            let frames = stream.fill(&mut left, &mut right);
+            if frames == 0 {
+                return Ok(stream.rendered());
+            }
+            if let Some(stems) = stream.ensemble.stems() {
+                sink(stems, frames)?;
+                stems.clear();
+            }
+        }
+    }
+}
+
 /// Renders a job from its start, as many frames at a time as the slices have room for.
 struct Stream<'a> {
     ensemble: Ensemble,
@@ -81,11 +115,14 @@ struct Stream<'a> {
     input: &'a [f32],
     /// The input frames that are being rendered, with silence after the end of the input.
     input_now: Vec<f32>,
-    known_frames: Option<u64>,
+    /// The frame of the song at which the rendering begins, and the one at which it ends, if that is known.
+    first_frame: u64,
+    end_frame: Option<u64>,
 }
 
 impl<'a> Stream<'a> {
-    fn new(job: &Job<'a>) -> Self {
+    fn new(job: &Job<'a>) -> Result<Self> {
+        job.options.check()?;
         let options = &job.options;
         let sample_rate = f64::from(options.sample_rate);
         let ensemble = Ensemble::of_kits(sample_rate, options.seed, job.kit, job.programs.to_vec());
@@ -97,13 +134,38 @@ impl<'a> Stream<'a> {
             ensemble = ensemble.with_mix(mix);
         }
         ensemble.set_tuning(job.tuning);
-        Self {
+        let first_frame = job.first_frame();
+        let mut stream = Self {
             ensemble,
             song: SongCursor::new(job.song, sample_rate),
             events: Vec::new(),
             input: job.input,
             input_now: Vec::new(),
-            known_frames: job.known_frames(),
+            first_frame,
+            end_frame: job.known_frames().map(|frames| first_frame.saturating_add(frames)),
+        };
+        stream.pass_over(options.block);
+        Ok(stream)
+    }
+
+    /// Advances to the first frame: obeys all messages at their frames, but plays no notes. So controllers, programs and oscillators
+    /// are there as they would be if the notes had been played.
+    fn pass_over(&mut self, block: usize) {
+        let (mut owners, mut left, mut right) = (Owners::default(), vec![0.0; block], vec![0.0; block]);
+        while self.song.frame() < self.first_frame {
+            let frames = (self.first_frame - self.song.frame()).min(block as u64) as usize;
+            self.events.clear();
+            self.song.advance(frames, &mut self.events);
+            let ensemble = &mut self.ensemble;
+            self.events.retain(|event| {
+                owners.hear(event);
+                let is_note = matches!(event.kind, EventKind::NoteOn { .. } | EventKind::Strike { .. });
+                if is_note {
+                    ensemble.leave_out_note(owners.of(event.channel));
+                }
+                !is_note
+            });
+            ensemble.process(&self.events, &mut left[..frames], &mut right[..frames]);
         }
     }
 
@@ -139,7 +201,7 @@ impl<'a> Stream<'a> {
     /// The frame up to which the rendering certainly continues; `None` at the end.
     fn next_end(&self) -> Option<u64> {
         let (frame, song_frames) = (self.song.frame(), self.song.song_frames());
-        let end = match self.known_frames {
+        let end = match self.end_frame {
             Some(end) => end,
             None if frame < song_frames => song_frames,
             None => {
@@ -182,8 +244,8 @@ impl<'a> Stream<'a> {
     /// The result, to be called at the end.
     fn rendered(&self) -> Rendered {
         Rendered {
-            frames: self.song.frame(),
-            tail_frames: self.song.frame() - self.song.song_frames(),
+            frames: self.song.frame() - self.first_frame,
+            tail_frames: self.song.frame() - self.song.song_frames().max(self.first_frame),
             voices_used: self.ensemble.voices_used(),
             limiter: self.ensemble.limiter_work(),
         }

@@ -1,10 +1,10 @@
 //! Renders a job into a WAV file: sets channels, level and length, and reports figures of the result.
 
-use super::job::Job;
+use super::job::{Job, Rendered};
 use super::labels::{Labels, NoteLabel};
 use super::meter::{Levels, Meter};
 use crate::error::{Error, Result};
-use crate::io::{Inputs, Output, SampleFormat, Target, WavFormat, WavWriter};
+use crate::io::{Inputs, Loop, Output, SampleFormat, Target, WavFormat, WavWriter};
 use crate::units::{db_from_gain, gain_from_db, mono_from_stereo};
 use std::path::Path;
 use std::time::Instant;
@@ -113,6 +113,42 @@ pub fn to_wav(
     write(job, delivery, output, None, progress)
 }
 
+/// What is written into a WAV file.
+pub(super) trait Source: Sync {
+    /// The job that it comes from.
+    fn job(&self) -> &Job<'_>;
+
+    /// Its length in frames, unless that depends on the sound.
+    fn known_frames(&self) -> Option<u64>;
+
+    /// Whether the file is a loop as a whole.
+    fn is_loop(&self) -> bool;
+
+    /// Hands each block to `sink`, and reads labels. Gives the same samples each time.
+    fn play(&self, labels: Option<&mut Labels>, sink: &mut Sink) -> Result<Rendered>;
+}
+
+/// Takes blocks, left and right.
+pub(super) type Sink<'a> = dyn FnMut(&[f32], &[f32]) -> Result<()> + Send + 'a;
+
+impl Source for Job<'_> {
+    fn job(&self) -> &Job<'_> {
+        self
+    }
+
+    fn known_frames(&self) -> Option<u64> {
+        Job::known_frames(self)
+    }
+
+    fn is_loop(&self) -> bool {
+        false
+    }
+
+    fn play(&self, labels: Option<&mut Labels>, sink: &mut Sink) -> Result<Rendered> {
+        self.render_labelled(labels, sink)
+    }
+}
+
 /// Like [`to_wav`]; also returns the labels of all notes in order of their onsets. Their levels are those of the file.
 ///
 /// # Errors
@@ -131,20 +167,20 @@ pub(crate) fn to_labelled_wav(
     Ok((report, labels))
 }
 
-fn write(
-    job: &Job,
+pub(super) fn write(
+    source: &impl Source,
     delivery: &Delivery,
     output: &mut Output,
     labels: Option<&mut Labels>,
     mut progress: impl FnMut(Progress) -> Result<()> + Send,
 ) -> Result<Report> {
-    let started = Instant::now();
+    let (started, job) = (Instant::now(), source.job());
     let channels = if delivery.mono { 1 } else { 2 };
     let format = WavFormat { sample_rate: job.options.sample_rate, channels, samples: delivery.samples };
-    let least_frames = job.known_frames().unwrap_or(job.song_frames());
+    let least_frames = source.known_frames().unwrap_or(job.song_frames());
     output.check_room(format.file_len(least_frames)?)?;
 
-    let length_needed = !output.is_seekable() && job.known_frames().is_none();
+    let length_needed = !output.is_seekable() && source.known_frames().is_none();
     let two_passes = length_needed || !matches!(delivery.level, Level::Gain(_));
     let expected = least_frames * (1 + u64::from(two_passes));
     let mut rendered_frames = 0;
@@ -153,12 +189,12 @@ fn write(
         progress(Progress { frames: rendered_frames, expected: expected.max(rendered_frames) })
     };
 
-    let mut length = job.known_frames();
+    let mut length = source.known_frames();
     let mut measured = None;
     if two_passes {
         let mut meter = Meter::new(format.sample_rate, channels)?;
         let mut mix = Mix::new(delivery.mono, 1.0);
-        let rendered = job.render(|left, right| {
+        let rendered = source.play(None, &mut |left, right| {
             let (left, right) = mix.apply(left, right);
             meter.add(left, right)?;
             advance(left.len())
@@ -173,8 +209,11 @@ fn write(
     let dither = delivery.dither.then_some(job.options.seed);
     let name = output.name().to_owned();
     let announced = length.filter(|_| !output.is_seekable());
-    let mut writer = WavWriter::new(output.stream(), &name, format, dither, announced)?;
-    let rendered = job.render_labelled(labels, |left, right| {
+    let mut writer = match length.filter(|_| source.is_loop()) {
+        None => WavWriter::new(output.stream(), &name, format, dither, announced)?,
+        Some(frames) => WavWriter::looped(output.stream(), &name, format, dither, frames, &Loop::whole(frames))?,
+    };
+    let rendered = source.play(labels, &mut |left, right| {
         let (left, right) = mix.apply(left, right);
         meter.add(left, right)?;
         writer.write(left, right)?;
@@ -231,7 +270,7 @@ fn gain_db(level: Level, measured: Option<Levels>) -> Result<f64> {
 }
 
 /// Applies channel mode and gain, in buffers that are reused for each block. In mono there is no right channel.
-struct Mix {
+pub(super) struct Mix {
     mono: bool,
     gain: f64,
     left: Vec<f32>,
@@ -239,11 +278,11 @@ struct Mix {
 }
 
 impl Mix {
-    fn new(mono: bool, gain: f64) -> Self {
+    pub(super) fn new(mono: bool, gain: f64) -> Self {
         Self { mono, gain, left: Vec::new(), right: Vec::new() }
     }
 
-    fn apply(&mut self, left: &[f32], right: &[f32]) -> (&[f32], &[f32]) {
+    pub(super) fn apply(&mut self, left: &[f32], right: &[f32]) -> (&[f32], &[f32]) {
         let Self { mono, gain, .. } = *self;
         let scaled = |sample: f32| (f64::from(sample) * gain) as f32;
         self.left.clear();

@@ -112,6 +112,11 @@ const NAMES: &[Name] = &[
     ),
     plain("solo", |request, value| channels(&mut request.reading.solo, value)),
     plain("mute", |request, value| channels(&mut request.reading.mute, value)),
+    plain("from", |request, value| put(&mut request.reading.from, quantity::song_time(value).map(Some))),
+    plain("to", |request, value| put(&mut request.reading.to, quantity::song_time(value).map(Some))),
+    plain("pattern", |request, value| {
+        put(&mut request.reading.pattern, quantity::whole(1..=u16::MAX.into())(value).map(Some))
+    }),
     plain("preset", |request, value| put(&mut request.sound.preset, Ok(Some(value.into())))),
     plain("channel", |request, value| add(&mut request.sound.channels, quantity::channel(value))),
     plain("programs", |request, value| put(&mut request.sound.programs, Ok(value.into()))),

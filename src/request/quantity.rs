@@ -2,7 +2,9 @@
 //!
 //! Every error is a message that says what would be right.
 
-use crate::io::SampleFormat;
+#[cfg(feature = "batch")]
+use crate::io::FileFormat;
+use crate::io::{SampleFormat, SongTime};
 use crate::params::{PARAMS, Param};
 use crate::render::{Level, SAMPLE_RATES, Tail};
 use crate::units::{split_quantity, with_decimal_point};
@@ -168,6 +170,35 @@ pub fn bits(text: &str) -> Result<SampleFormat, String> {
     }
 }
 
+/// Parses a format of sound files: `wav` or `flac`.
+///
+/// # Errors
+/// A message that says what would be right.
+#[cfg(feature = "batch")]
+pub fn file_format(text: &str) -> Result<FileFormat, String> {
+    match text {
+        "wav" => Ok(FileFormat::Wav),
+        "flac" => Ok(FileFormat::Flac),
+        _ => Err("expected wav or flac".to_owned()),
+    }
+}
+
+/// Parses a time in a song: seconds, or a bar with or without a beat, as in `bar 9` and `bar9.3`.
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn song_time(text: &str) -> Result<SongTime, String> {
+    let trimmed = text.trim();
+    let Some((_, place)) = trimmed.split_at_checked(3).filter(|(word, _)| word.eq_ignore_ascii_case("bar")) else {
+        return seconds(text).map(SongTime::Seconds);
+    };
+    let wrong = || format!("‘{text}’ is no bar: expected bar 9, or bar 9.3 for its third beat");
+    let (bar, beat) = place.trim().split_once('.').unwrap_or((place.trim(), "1"));
+    let bar = bar.parse().ok().filter(|bar| *bar > 0).ok_or_else(wrong)?;
+    let beat = beat.parse().ok().filter(|beat: &u16| *beat > 0).ok_or_else(wrong)?;
+    Ok(SongTime::Bar { bar, beat: beat.into() })
+}
+
 /// Checks the form of a note for `--note`. Which key a frequency is depends on the patch, so the note stays a text
 /// here.
 ///
@@ -248,6 +279,10 @@ mod tests {
         assert_eq!(level("lufs=-14 LUFS"), Ok(Level::Loudness(-14.0)));
         assert_eq!(setting("mallet_pulse=contact"), Ok((Param::MalletPulse, 1.0)));
         assert_eq!(setting("decay = 250 ms"), Ok((Param::Decay, 0.25)));
+        for (text, bar, beat) in [("bar 9", 9, 1.0), ("bar9.3", 9, 3.0), ("Bar 12.10", 12, 10.0)] {
+            assert_eq!(song_time(text), Ok(SongTime::Bar { bar, beat }));
+        }
+        assert_eq!(song_time("90 s"), Ok(SongTime::Seconds(90.0)));
         assert_eq!(channel("10=a=b.toml"), Ok((9, "a=b.toml".to_owned())));
     }
 
@@ -287,6 +322,9 @@ mod tests {
             (channel("0=Kick").err(), "channel 0 is out of range: expected 1 to 16"),
             (channel("17=Kick").err(), "channel 17 is out of range: expected 1 to 16"),
             (channel("x=Kick").err(), "channel ‘x’ is not a whole number: expected 1 to 16"),
+            (song_time("bar 0").err(), "‘bar 0’ is no bar: expected bar 9, or bar 9.3 for its third beat"),
+            (song_time("bar").err(), "‘bar’ is no bar: expected bar 9, or bar 9.3 for its third beat"),
+            (song_time("9b").err(), "‘9b’ is not a number: expected 0 to 86400 s"),
             (setting("deacy=1").err(), "there is no parameter ‘deacy’; the nearest is ‘decay’"),
             (setting("gain=99").err(), "gain: 99 is out of range: expected from -60 dB to 12 dB"),
         ]

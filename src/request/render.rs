@@ -82,6 +82,8 @@ pub struct Prepared {
     /// The sounds.
     pub sounds: Sounds,
     input: Vec<f32>,
+    /// Where the rendering begins, in seconds.
+    from: f64,
     options: Options,
     /// How the rendering is delivered.
     pub delivery: Delivery,
@@ -122,9 +124,9 @@ impl Request {
     /// As [`Request::check`] and [`SoundRequest::load`]; those of files that cannot be read.
     pub fn prepare(&self, inputs: &mut Inputs, warn: &mut dyn FnMut(&str)) -> Result<Prepared> {
         self.check()?;
-        let mut song = match &self.song {
-            Some(path) => Some(self.reading.read(path, inputs, warn)?),
-            None => None,
+        let (mut song, from) = match &self.song {
+            Some(path) => self.reading.read_part(path, inputs, warn).map(|(song, from)| (Some(song), from))?,
+            None => (None, 0.0),
         };
         let sounds = self.sound.load(song.as_mut(), false, inputs)?;
         let song = match song {
@@ -145,7 +147,7 @@ impl Request {
         let options = Options { sample_rate: self.rate, seed: self.seed, block: self.block, tail: self.tail };
         let level = self.normalize.unwrap_or(Level::Gain(self.gain_db));
         let delivery = Delivery { samples: self.bits, dither: self.dither, mono: self.mono, level };
-        Ok(Prepared { song, sounds, input, options, delivery })
+        Ok(Prepared { song, sounds, input, from, options, delivery })
     }
 
     fn chord(&self, kit: &Kit) -> Result<Song> {
@@ -160,7 +162,7 @@ impl Request {
 impl Prepared {
     /// The job.
     pub fn job(&self) -> Job<'_> {
-        let Self { song, sounds: Sounds { kit, channels, programs, mix, tuning, .. }, input, options, .. } = self;
-        Job { song, kit, channels, programs, mix: mix.as_ref(), tuning, input, options: *options }
+        let Self { song, sounds: Sounds { kit, channels, programs, mix, tuning, .. }, input, from, options, .. } = self;
+        Job { song, kit, channels, programs, mix: mix.as_ref(), tuning, input, from: *from, options: *options }
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::engine::EventKind;
 use crate::engine::banks::DRUM_CHANNEL;
-use crate::error::Result;
-use crate::io::{Inputs, Song};
+use crate::error::{Error, Result};
+use crate::io::{Inputs, MidiFile, Reading, Song, SongTime};
 use crate::text::counted;
 use std::path::Path;
 
@@ -23,11 +23,18 @@ pub struct SongRequest {
     pub solo: Vec<u8>,
     /// The channels, from 1, whose notes are left out.
     pub mute: Vec<u8>,
+    /// Where the rendering begins; at the start if there is none. Seconds are those of the song as it is played.
+    pub from: Option<SongTime>,
+    /// Where the song ends; at its own end if there is none.
+    pub to: Option<SongTime>,
+    /// The pattern to play of a file of type 2, from 1.
+    pub pattern: Option<u16>,
 }
 
 impl Default for SongRequest {
     fn default() -> Self {
-        Self { lenient: false, tempo: 1.0, transpose: 0, solo: Vec::new(), mute: Vec::new() }
+        let [solo, mute] = [const { Vec::new() }; 2];
+        Self { lenient: false, tempo: 1.0, transpose: 0, solo, mute, from: None, to: None, pattern: None }
     }
 }
 
@@ -37,7 +44,17 @@ impl SongRequest {
     /// # Errors
     /// As [`Song::read`].
     pub fn read(&self, path: &Path, inputs: &mut Inputs, warn: &mut dyn FnMut(&str)) -> Result<Song> {
-        let mut song = if path == Path::new("-") {
+        self.read_part(path, inputs, warn).map(|(song, _)| song)
+    }
+
+    /// As [`SongRequest::read`]; also returns where the rendering begins, in seconds.
+    pub(super) fn read_part(
+        &self,
+        path: &Path,
+        inputs: &mut Inputs,
+        warn: &mut dyn FnMut(&str),
+    ) -> Result<(Song, f64)> {
+        let MidiFile { mut song, places, .. } = if path == Path::new("-") {
             self.parse(inputs.stdin()?.lock(), "stdin", warn)?
         } else {
             self.parse(inputs.open(path)?, &path.display().to_string(), warn)?
@@ -45,7 +62,23 @@ impl SongRequest {
         self.select(&mut song);
         self.transpose(&mut song, warn);
         self.stretch(&mut song);
-        Ok(song)
+        let seconds = |option: &str, time: Option<SongTime>| match time {
+            None => Ok(None),
+            Some(SongTime::Seconds(seconds)) => Ok(Some(seconds)),
+            Some(bar) => match places.seconds(bar) {
+                Ok(seconds) => Ok(Some(seconds / self.tempo)),
+                Err(message) => Err(Error::value(option, message)),
+            },
+        };
+        let (from, to) = (seconds("--from", self.from)?.unwrap_or(0.0), seconds("--to", self.to)?);
+        if let Some(to) = to {
+            song.end_at(to);
+        }
+        if from > 0.0 && from >= song.seconds {
+            let message = format!("{from:.3} s is not before the end, at {:.3} s", song.seconds);
+            return Err(Error::value("--from", message));
+        }
+        Ok((song, from))
     }
 
     /// Leaves out the notes of channels that are not to be heard. Their controllers stay, since MPE’s master channels have some for
@@ -91,17 +124,17 @@ impl SongRequest {
         song.seconds /= self.tempo;
     }
 
-    fn parse(&self, reader: impl std::io::Read, origin: &str, warn: &mut dyn FnMut(&str)) -> Result<Song> {
-        if !self.lenient {
-            return Song::read(reader, origin);
-        }
-        let (song, repairs) = Song::read_leniently(reader, origin)?;
-        for repair in repairs.iter().take(MOST_REPAIRS) {
+    fn parse(&self, reader: impl std::io::Read, origin: &str, warn: &mut dyn FnMut(&str)) -> Result<MidiFile> {
+        let file = MidiFile::read(reader, origin, Reading { lenient: self.lenient, pattern: self.pattern })?;
+        for repair in file.repairs.iter().take(MOST_REPAIRS) {
             warn(&format!("{origin}: {repair}"));
         }
-        if repairs.len() > MOST_REPAIRS {
-            warn(&format!("{origin}: {} repairs more", repairs.len() - MOST_REPAIRS));
+        if file.repairs.len() > MOST_REPAIRS {
+            warn(&format!("{origin}: {} repairs more", file.repairs.len() - MOST_REPAIRS));
         }
-        Ok(song)
+        if let Some(unheeded) = &file.unheeded {
+            warn(&format!("{origin}: {unheeded}"));
+        }
+        Ok(file)
     }
 }

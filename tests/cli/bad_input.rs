@@ -113,7 +113,7 @@ fn outputs() {
     let sandbox = Sandbox::new();
     sandbox.fails("render --note 60 -o none/out.wav", 1, "none/out.wav: ");
     sandbox.fails("render --note 60 -o .", 1, ".: ");
-    let message = "out.mp3: only WAV can be written, not .mp3: expected a name that ends in .wav";
+    let message = "out.mp3: only WAV and FLAC can be written, not .mp3: expected .wav or .flac";
     sandbox.fails("render --note 60 -o out.mp3", 1, message);
     if exists("/sys/kernel") {
         sandbox.fails("render --note 60 -o /sys/out.wav", 1, "/sys/out.wav: no file can be made in the folder /sys: ");

@@ -216,3 +216,26 @@ fn an_audition_plays_shows_and_measures_what_is_meant() {
     sandbox.succeeds(&format!("{again} --force"));
     sandbox.fails("presets audition --search nothing-like-it --out none", 1, "no sound is meant");
 }
+
+#[test]
+fn the_presets_like_a_recording_begin_with_the_one_that_made_it() {
+    let sandbox = Sandbox::new();
+    sandbox.succeeds(
+        "render --note 58 --velocity 100 --length 1 --tail none --preset Marimba --gain-db -12 -o strike.wav",
+    );
+    let found = sandbox.succeeds("presets like strike.wav --family mallet --note 58 --count 3 --json");
+    let found: serde_json::Value = serde_json::from_slice(&found).unwrap();
+    assert_eq!((found[0]["name"].as_str(), found[0]["key"].as_f64()), (Some("Marimba"), Some(58.0)));
+    let distance = |n: usize| found[n]["distance_db"].as_f64().unwrap();
+    assert!(distance(0) < 2.0 && distance(1) > 4.0 && distance(1) <= distance(2) && found[3].is_null());
+    sandbox.write(
+        "silence.wav",
+        [
+            &b"RIFF\x2c\0\0\0WAVEfmt \x10\0\0\0\x01\0\x01\0\x80\xbb\0\0\0\x77\x01\0\x02\0\x10\0data\x08\0\0\0"[..],
+            &[0; 8],
+        ]
+        .concat(),
+    );
+    sandbox.fails("presets like silence.wav", 1, "silence.wav: it is silent");
+    sandbox.fails("presets like strike.wav --search nothing-is-called-so", 1, "none is so");
+}

@@ -17,12 +17,15 @@ mod listings;
 mod messages;
 mod mpe;
 mod outputs;
+mod passages;
 #[cfg(unix)]
 mod recipes;
 mod recordings;
+mod samples;
 mod signals;
 mod songs;
 mod sound;
+mod stems;
 mod tuning;
 
 use assert_cmd::Command;

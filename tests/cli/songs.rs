@@ -105,7 +105,9 @@ fn what_is_no_midi_file_is_called_what_it_is() {
     let mut patterns = song(&[note_on(0, 0, 60), end(1)]);
     patterns[9] = 2;
     sandbox.write("patterns.mid", patterns);
-    sandbox.fails("render patterns.mid --lenient -o out.wav", 1, "type 2 (independent patterns): expected type 0 or 1");
+    let message = "patterns.mid: a MIDI file of type 2, whose tracks are patterns: expected --pattern 1 to 1";
+    sandbox.fails("render patterns.mid --lenient -o out.wav", 1, message);
+    sandbox.fails("render patterns.mid --pattern 2 -o out.wav", 1, message);
 }
 
 #[test]

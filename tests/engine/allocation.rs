@@ -27,7 +27,8 @@ fn storm(block: u32) -> Vec<Event> {
             EventKind::ChannelPressure(value),
             EventKind::PolyPressure { key, pressure: value },
             EventKind::Control {
-                controller: [1, 6, 7, 10, 11, 64, 66, 67, 74, 91, 100, 101, 120, 121, 123][n as usize % 15],
+                controller: [1, 5, 6, 7, 10, 11, 64, 65, 66, 67, 68, 74, 84, 91, 100, 101, 120, 121, 123, 126, 127]
+                    [n as usize % 21],
                 value,
             },
             EventKind::Param { param: param.param, value: param.denormalise(value.into()) },
@@ -40,6 +41,7 @@ fn storm(block: u32) -> Vec<Event> {
                 offset: value - 0.5,
             },
             EventKind::Tempo(60.0 + value),
+            EventKind::Tune { key, pitch: 60.0 + value, sounding: n % 2 == 0 },
             EventKind::Release { notes: Notes { id: NoteId::new(n as i32 - 5), ..Notes::default() }, velocity: value },
             EventKind::Program((n % 4) as u8),
         ] {

@@ -67,6 +67,8 @@ fn garbage_in_events_never_comes_out() {
             EventKind::Control { controller: 1, value },
             EventKind::Choke { group: 255 },
             EventKind::Tempo(value),
+            EventKind::Tune { key: 255, pitch: value, sounding: true },
+            EventKind::Tune { key: 60, pitch: value, sounding: false },
             EventKind::Release { notes: Notes::on(255, 255), velocity: value },
             EventKind::Silence { notes: Notes::on(255, 255) },
             EventKind::Modulate { id: None, param: Param::Gain, offset: value },

@@ -144,13 +144,15 @@ fn any_kind() -> impl Strategy<Value = EventKind> {
             .prop_map(|(notes, expression, value)| EventKind::Express { notes, expression, value }),
         1 => unit.clone().prop_map(EventKind::ChannelPressure),
         2 => (-1.0..1.0f32).prop_map(EventKind::PitchBend),
-        3 => (select(vec![1, 2, 7, 10, 11, 64, 66, 67, 74, 120, 121, 123]), unit)
+        3 => (select(vec![1, 2, 5, 7, 10, 11, 64, 65, 66, 67, 68, 74, 84, 120, 121, 123, 126, 127]), unit)
             .prop_map(|(controller, value)| EventKind::Control { controller, value }),
         3 => (any_param(), 0.0..1.0f64)
             .prop_map(|(param, position)| EventKind::Param { param, value: param.info().denormalise(position) }),
         3 => (any_id(), any_param(), -1.0..1.0f32)
             .prop_map(|(id, param, offset)| EventKind::Modulate { id, param, offset }),
         1 => (20.0..300.0f32).prop_map(EventKind::Tempo),
+        1 => (any_key(), 0.0..128.0f32, any::<bool>())
+            .prop_map(|(key, pitch, sounding)| EventKind::Tune { key, pitch, sounding }),
         1 => (0..3u8).prop_map(|group| EventKind::Choke { group }),
         2 => (0..4u8).prop_map(EventKind::Program),
     ]
@@ -339,10 +341,11 @@ fn number(kind: EventKind) -> usize {
         EventKind::Program(_) => 13,
         EventKind::Strike { .. } => 14,
         EventKind::Nudge { .. } => 15,
+        EventKind::Tune { .. } => 16,
     }
 }
 
-const KINDS: usize = 16;
+const KINDS: usize = 17;
 
 #[test]
 fn every_kind_of_event_comes_up() {

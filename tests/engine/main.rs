@@ -9,6 +9,7 @@ mod bodies;
 mod body_reference;
 mod body_rendered;
 mod clicks;
+mod controllers;
 mod coupled_reference;
 mod damped_sine;
 mod events;

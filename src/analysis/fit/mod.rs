@@ -18,6 +18,7 @@
 //! | `body`, `levels`, `tuned` | a physical model in place of a table of modes |
 //! | `layers` | how the sound follows velocity and key |
 //! | `doubts`, `summary`, `report` | warnings, words and the page that tell the result |
+//! | `like` | the presets that sound most like a recording |
 //! | `simplex` | minimises a function of a few numbers |
 
 mod audition;
@@ -34,6 +35,7 @@ mod held;
 mod improve;
 mod layers;
 mod levels;
+mod like;
 mod movement;
 mod names;
 mod noise;
@@ -55,6 +57,7 @@ mod tones;
 mod tuned;
 
 pub use body::{Explained, Family};
+pub use like::{Model, Nearness};
 pub use names::take_velocities_from_names;
 pub use release::Release;
 pub use take::{Take, VELOCITY};

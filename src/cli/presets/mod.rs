@@ -1,6 +1,7 @@
-//! `sprung presets`: lists, shows and auditions presets and kits, and checks preset and kit files.
+//! `sprung presets`: lists, shows and auditions presets and kits, finds those like a recording, and checks preset and kit files.
 
 mod audition;
+mod like;
 mod list;
 mod select;
 
@@ -26,6 +27,7 @@ Examples:
   sprung presets list --family mallet
   sprung presets list --gm
   sprung presets audition --out sounds
+  sprung presets like strike.wav --family bell
   sprung presets show Kick > mine.toml
   sprung presets show Marimba --figure marimba.png
   sprung presets check *.toml";
@@ -43,6 +45,8 @@ enum Action {
     List(list::Args),
     /// Render the factory's sounds, with a page that plays them and shows how they measure
     Audition(audition::Args),
+    /// Name the presets that sound most like a recording
+    Like(like::Args),
     /// Print a preset's file, to start one's own from
     Show {
         /// Name of a factory preset or kit, or a preset or kit file ending in .toml
@@ -63,6 +67,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     match &args.action {
         Action::List(args) => print(&list::list(args)),
         Action::Audition(args) => audition::run(args),
+        Action::Like(args) => like::run(args),
         Action::Show { name, figure } => {
             let mut inputs = Inputs::default();
             let playable = load(name, &mut inputs)?;

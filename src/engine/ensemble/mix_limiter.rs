@@ -14,6 +14,7 @@ use crate::sound::Kit;
 pub(super) struct MixLimiter {
     limiter: Limiter,
     channels: Channels,
+    is_bypassed: bool,
 }
 
 /// Sets of channels, one bit each.
@@ -56,12 +57,22 @@ impl Channels {
 impl MixLimiter {
     /// A limiter for sixteen channels, each of which must then be given a kit.
     pub(super) fn new(sample_rate: f64) -> Self {
-        Self { limiter: Limiter::new(sample_rate), channels: Channels { asking: 0, played: 0 } }
+        Self { limiter: Limiter::new(sample_rate), channels: Channels { asking: 0, played: 0 }, is_bypassed: false }
     }
 
     /// Sets the kit of a channel.
     pub(super) fn set_kit(&mut self, channel: u8, kit: &Kit) {
         self.channels.set_asking(channel, kit.values().get(Param::Limiter));
+    }
+
+    /// From now on, changes no sample.
+    pub(super) fn leave_unlimited(&mut self) {
+        self.is_bypassed = true;
+    }
+
+    /// Whether the kits of the channels that have played ask for it.
+    pub(super) fn is_wanted(&self) -> bool {
+        self.channels.is_on()
     }
 
     /// How much the limiter has reduced the level so far.
@@ -73,7 +84,7 @@ impl MixLimiter {
     pub(super) fn process(&mut self, chunk: &Chunk, is_heard: bool, [left, right]: [&mut [f32]; 2]) {
         let mut limit = |is_on: bool, left: &mut [f32], right: &mut [f32]| {
             if is_heard || !self.limiter.is_idle() {
-                self.limiter.process(is_on, left, right);
+                self.limiter.process(is_on && !self.is_bypassed, left, right);
             }
         };
         let mut frame = 0;

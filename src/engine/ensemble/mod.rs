@@ -7,6 +7,7 @@ mod mix_limiter;
 mod part;
 mod process;
 mod shared_space;
+mod stems;
 
 use super::note::nearest_channel;
 use super::space::needs_bodies;
@@ -23,6 +24,7 @@ use mix_limiter::MixLimiter;
 pub use part::Part;
 use shared_space::SharedSpace;
 use std::sync::Arc;
+pub(crate) use stems::Stems;
 
 /// Frames that are rendered and mixed at a time, unless [`Ensemble::with_chunk`] sets another number.
 const CHUNK: usize = 1024;
@@ -52,6 +54,8 @@ pub struct Ensemble {
     /// Amplitude ratio of the mix.
     gain: f32,
     limiter: MixLimiter,
+    /// The stems, if they are wanted.
+    stems: Option<Box<Stems>>,
 }
 
 impl Ensemble {
@@ -79,6 +83,7 @@ impl Ensemble {
             shared_space: None,
             gain: 1.0,
             limiter: MixLimiter::new(allowed(sample_rate)),
+            stems: None,
         };
         ensemble.reserve(largest);
         if ensemble.programs.iter().any(|kit| needs_bodies(kit.values())) {
@@ -164,6 +169,33 @@ impl Ensemble {
     /// note. Afterwards [`Ensemble::process`] is not real-time safe: it allocates at such strikes and while they act. The output stays the same.
     pub(crate) fn separate_strikes(&mut self) {
         self.lender.voices_mut().for_each(|voice| voice.separate_strikes());
+    }
+
+    /// From now on, keeps the stems of all frames until they are cleared. Afterwards [`Ensemble::process`] is not real-time safe: it
+    /// allocates. The output is the same, but for the rounding of the sums of kits' voices.
+    pub(crate) fn keep_stems(&mut self) {
+        self.stems = Some(Box::default());
+        self.parts.iter_mut().for_each(|part| part.synth.sum_pads());
+    }
+
+    /// The stems since they were cleared, if they are kept.
+    pub(crate) fn stems(&mut self) -> Option<&mut Stems> {
+        self.stems.as_deref_mut()
+    }
+
+    /// From now on, the limiter does nothing; [`Ensemble::is_limiter_wanted`] says whether it would have been on.
+    pub(crate) fn leave_unlimited(&mut self) {
+        self.limiter.leave_unlimited();
+    }
+
+    /// Whether the limiter is on for what has been played so far.
+    pub(crate) fn is_limiter_wanted(&self) -> bool {
+        self.limiter.is_wanted()
+    }
+
+    /// Counts a note that is left out on the channel whose instrument would play it, so that later notes keep their random numbers.
+    pub(crate) fn leave_out_note(&mut self, owner: u8) {
+        self.parts[usize::from(nearest_channel(owner))].synth.leave_out_note();
     }
 
     /// Amplitude ratio at which the channels are mixed, before the limiter.

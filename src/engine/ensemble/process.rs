@@ -94,6 +94,10 @@ impl Ensemble {
             self.parts.iter().for_each(|part| part.add_to(left, right));
             let mix = [&mut *left, &mut *right];
             let rings = self.shared_space.as_mut().is_some_and(|space| space.process(&chunk, &self.parts, mix));
+            if let Some(stems) = &mut self.stems {
+                let space = self.shared_space.as_ref().filter(|_| rings).map(|space| space.output());
+                stems.take(chunk.frames, &mut self.parts, space, self.gain);
+            }
             if self.gain != 1.0 && (is_heard || rings) {
                 left.iter_mut().chain(&mut *right).for_each(|sample| *sample *= self.gain);
             }

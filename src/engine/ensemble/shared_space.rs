@@ -102,6 +102,11 @@ impl SharedSpace {
         true
     }
 
+    /// The space's own sound in the last chunk. Valid only if it sounded.
+    pub(super) fn output(&self) -> [&[f32]; 2] {
+        [&self.left, &self.right]
+    }
+
     /// Sums the sends of the channels between two frames of a chunk, in channel order.
     fn gather(&mut self, parts: &[Part], from: usize, to: usize) {
         let Self { sends, left, right, .. } = self;

@@ -2,7 +2,9 @@
 
 use crate::engine::channel::{Channel, Wheels};
 use crate::engine::midi::{controller, seven_bits};
+use crate::engine::portamento::NoteGlide;
 use crate::engine::zones::{MEMBER_BEND_RANGE, Zones};
+use crate::params::PlayMode;
 
 /// The controllers of all channels, and the MPE zones. Real-time safe.
 pub(super) struct Channels {
@@ -10,12 +12,14 @@ pub(super) struct Channels {
     zones: Zones,
     /// Frames until the gains of all channels have reached their targets.
     gains_moving: u32,
+    /// The play mode that the last message of mode has chosen; none for the patch's.
+    mode: Option<PlayMode>,
 }
 
 impl Channels {
     /// All channels in their power-on state, without zones.
     pub(super) fn new(sample_rate: f64) -> Self {
-        Self { channels: [Channel::new(sample_rate); 16], zones: Zones::default(), gains_moving: 0 }
+        Self { channels: [Channel::new(sample_rate); 16], zones: Zones::default(), gains_moving: 0, mode: None }
     }
 
     fn of(&self, channel: u8) -> &Channel {
@@ -48,6 +52,21 @@ impl Channels {
         self.zones.reach(channel)
     }
 
+    /// The glide of a note that starts now on a channel, if it is not its patch's: the channel's own, or that of its zone's master.
+    pub(super) fn glide(&mut self, channel: u8) -> Option<NoteGlide> {
+        let own = self.channels[usize::from(channel)].glide();
+        let master = self.zones.master_of(channel);
+        own.or_else(|| self.channels[usize::from(master?)].glide())
+    }
+
+    /// The play mode of notes whose patch has `own`. A patch that moves without strikes does so in mono mode too.
+    pub(super) fn mode(&self, own: PlayMode) -> PlayMode {
+        match self.mode {
+            Some(PlayMode::Mono) if own == PlayMode::Legato => own,
+            chosen => chosen.unwrap_or(own),
+        }
+    }
+
     /// Moves the pitch wheel of a channel, −1 to 1.
     pub(super) fn bend(&mut self, channel: u8, bend: f32) {
         self.channels[usize::from(channel)].bend = bend;
@@ -61,6 +80,7 @@ impl Channels {
     /// Handles a controller at a value 0–1. Returns the number of members if the message configures this channel's
     /// zone.
     pub(super) fn control(&mut self, channel: u8, number: u8, value: f32) -> Option<u8> {
+        let mode = self.of(channel).mode();
         for reached in self.zones.reach(channel) {
             // Notes combine the master's wheels and pressure with their own, so these stay separate. Only a reset goes
             // to members.
@@ -69,6 +89,10 @@ impl Channels {
             }
         }
         let sender = *self.of(channel);
+        // Members of a zone have one note each, and no mode of their own.
+        if sender.mode() != mode && self.master_of(channel).is_none() {
+            self.mode = sender.mode();
+        }
         self.gains_moving = sender.slope_frames();
         let is_entry =
             matches!(number, controller::DATA | controller::DATA_FINE | controller::INCREMENT | controller::DECREMENT);

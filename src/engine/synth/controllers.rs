@@ -14,6 +14,9 @@ impl Synth {
         if number == controller::BRIGHTNESS {
             self.channels.reach(channel).for_each(|reached| self.brighten(reached));
         }
+        if matches!(number, controller::LEGATO | controller::MONO | controller::POLY | controller::RESET) {
+            self.configure_manager();
+        }
         if let Some(members) = members {
             self.configure_zone(channel, members);
         }

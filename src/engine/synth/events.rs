@@ -61,6 +61,9 @@ impl Synth {
                 let beat_rate = f64::from(finite(beats_per_minute).clamp(1.0, 10_000.0)) / 60.0;
                 self.instruments.set_tempo(beat_rate, self.clock);
             }
+            EventKind::Tune { key, pitch, sounding } => {
+                self.tune(nearest_key(key), finite(pitch).clamp(0.0, 128.0), sounding)
+            }
             EventKind::Choke { group } => self.manager.choke(group),
             EventKind::Program(_) => {}
         }
@@ -68,12 +71,13 @@ impl Synth {
 
     /// Presses a key. The channel and the synth complete the note.
     fn key_down(&mut self, note: Note) {
-        let key = nearest_key(note.key);
+        let (key, glide) = (nearest_key(note.key), self.channels.glide(note.channel));
         self.note_on(Note {
             key,
             pitch: Pitch::Semitones(key.into()),
             brightness: self.channels.brightness(note.channel),
             is_legato: self.manager.has_key_down(),
+            glide,
             serial: self.note_serial,
             ..note
         });
@@ -97,6 +101,23 @@ impl Synth {
         }
         if self.manager.note_on(instrument, note) {
             instrument.last_pitch = Some(instrument.pitch(&note));
+        }
+        if let Some(pads) = &mut self.pads {
+            let is_sounding = |serial| self.manager.sounding_voices().any(|(note, _)| note.serial == serial);
+            pads.begin(&note, self.instruments.kit(), is_sounding);
+        }
+    }
+
+    /// Gives a key another pitch, in semitones on the MIDI scale, and moves its sounding notes there if `sounding` says so.
+    fn tune(&mut self, key: u8, pitch: f32, sounding: bool) {
+        let pitch = Pitch::Semitones(pitch.into());
+        self.instruments.tune(key, pitch);
+        for (note, voice) in self.manager.active().filter(|(note, _)| sounding && note.key == key) {
+            if let Some(instrument) = self.instruments.of_note(note) {
+                let by = instrument.pitch(&Note { pitch, ..*note }) - instrument.pitch(note);
+                let brightness = self.channels.brightness(note.channel);
+                voice.express(Some(instrument), Expression::Tuning, by as f32, brightness);
+            }
         }
     }
 

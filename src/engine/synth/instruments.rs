@@ -3,9 +3,11 @@
 use crate::engine::instrument::Instrument;
 use crate::engine::modulation::{modulated, moved};
 use crate::engine::note::Note;
+use crate::engine::portamento::NoteGlide;
 use crate::engine::voice::{SynthVoice, footprint};
 use crate::engine::voice_manager::{Footprint, Voice};
 use crate::params::{PARAM_COUNT, Param, Values};
+use crate::sound::tuning::Pitch;
 use crate::sound::{Kit, Sound, Tuning};
 use crate::units::gain_from_db;
 use std::sync::Arc;
@@ -121,6 +123,11 @@ impl Instruments {
         self.tuning = *tuning;
     }
 
+    /// Gives a key another pitch, from the next note on.
+    pub(super) fn tune(&mut self, key: u8, pitch: Pitch) {
+        self.tuning.set(key, pitch);
+    }
+
     pub(super) fn tuning(&self) -> &Tuning {
         &self.tuning
     }
@@ -171,6 +178,14 @@ impl Instruments {
         note.detune += detune;
         (note.patch, note.body) = (instrument.patch_serial, instrument.body_serial);
         note.choke = self.kit.choke(pad, choke);
+        let pitch_of = |key| self.kit.tuned_pad(key, &self.tuning).map(|(_, pitch, detune)| (pitch, detune));
+        note.glide = note.glide.filter(|_| self.kit.is_single()).map(|glide| NoteGlide {
+            from: glide
+                .from_key
+                .and_then(pitch_of)
+                .map(|(pitch, detune)| instrument.pitch(&Note { pitch, detune, ..*note })),
+            ..glide
+        });
         (note.gain, note.pan) = (gain_from_db(pad.gain_db.into()) as f32, pad.pan);
         Some(instrument)
     }

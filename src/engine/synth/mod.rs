@@ -4,6 +4,7 @@ mod channels;
 mod controllers;
 mod events;
 mod instruments;
+mod pads;
 mod process;
 
 use super::controls::Controls;
@@ -19,6 +20,8 @@ use crate::patch::Patch;
 use crate::sound::{Kit, Tuning};
 use channels::Channels;
 use instruments::{DEFAULT_BEAT_RATE, Instruments};
+pub(crate) use pads::PadGroup;
+use pads::PadSums;
 use std::sync::Arc;
 
 pub(super) use process::{flush, part, silence_inaudible};
@@ -62,6 +65,8 @@ pub struct Synth {
     clock: u64,
     /// An event was handled since the last `control_tick()`: run it before rendering.
     needs_control: bool,
+    /// The pads of kits by themselves, if their stems are wanted.
+    pads: Option<Box<PadSums>>,
 }
 
 impl Synth {
@@ -92,6 +97,7 @@ impl Synth {
             note_serial: 0,
             clock: 0,
             needs_control: false,
+            pads: None,
         };
         synth.configure_manager();
         synth.follow_space();
@@ -238,6 +244,24 @@ impl Synth {
         self.manager.need(instrument, &Note { channel, key, patch, body, ..Note::NONE })
     }
 
+    /// From now on, sums the pads of kits by themselves, for [`Synth::take_pads`]. Not real-time safe from here on.
+    pub(super) fn sum_pads(&mut self) {
+        self.pads = Some(Box::default());
+    }
+
+    /// Gives what the pads of kits have sounded like since the last call, before the effects: left and right of each group. What is
+    /// missing at the end is silence.
+    pub(super) fn take_pads(&mut self, visit: impl FnMut(PadGroup, [&[f32]; 2])) {
+        if let Some(pads) = &mut self.pads {
+            pads.take(visit);
+        }
+    }
+
+    /// Counts a note that is left out, so that those after it keep their random numbers.
+    pub(super) fn leave_out_note(&mut self) {
+        self.note_serial += 1;
+    }
+
     /// The most that a note of any sound of the kit takes from the pool.
     pub(super) fn footprint(&self) -> Footprint {
         self.instruments.footprint()
@@ -263,7 +287,7 @@ impl Synth {
     fn configure_manager(&mut self) {
         let value = |param| self.instruments.modulated(param);
         let mode = match self.instruments.kit().is_single() {
-            true => PlayMode::from_value(value(Param::Mode)),
+            true => self.channels.mode(PlayMode::from_value(value(Param::Mode))),
             false => PlayMode::Poly,
         };
         let priority = Priority::from_value(value(Param::Priority));

@@ -84,8 +84,12 @@ impl Synth {
                 self.control_tick(to_tick);
             }
             let end = frames.min(frame + to_tick);
-            for (_, voice) in self.manager.active() {
-                voice.render(part(input, frame, end), &mut left[frame..end], &mut right[frame..end]);
+            for (note, voice) in self.manager.active() {
+                let (input, left, right) = (part(input, frame, end), &mut left[frame..end], &mut right[frame..end]);
+                match &mut self.pads {
+                    None => voice.render(input, left, right),
+                    Some(pads) => pads.render(note, voice, input, [left, right]),
+                }
             }
             self.pass(end - frame);
             frame = end;
@@ -108,6 +112,9 @@ impl Synth {
         self.clock += frames as u64;
         self.instruments.advance(frames as u32);
         self.channels.advance(frames as u32);
+        if let Some(pads) = &mut self.pads {
+            pads.pass(frames);
+        }
     }
 
     /// Frames until silence if no more events come; 0 if nothing sounds. Exact to a control tick ([`CONTROL_FRAMES`])

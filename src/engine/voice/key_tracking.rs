@@ -43,10 +43,15 @@ impl KeyTracking {
         MIDDLE_C + (note.pitch.semitones(self.a4_hz) + f64::from(note.detune) - MIDDLE_C) * self.amount
     }
 
-    /// The glide of a note that starts `from` semitones away from its pitch. `is_legato` says that another key is down.
-    pub(super) fn glide(&self, from: f64, is_legato: bool) -> Glide {
+    /// The glide of a note from a pitch in semitones on the MIDI scale to its own. `is_legato` says that another key is down.
+    pub(super) fn glide(&self, from: f64, note: &Note, is_legato: bool) -> Glide {
+        let to = self.pitch(note);
+        let from = note.glide.and_then(|glide| glide.from).unwrap_or(from) - to;
+        if let Some(pace) = note.glide.and_then(|glide| glide.pace) {
+            return Glide::new(from, 0.0, pace * fabs(from));
+        }
         let octaves = if self.glide_by == GlideBy::Rate { fabs(from) / 12.0 } else { 1.0 };
-        let slides = is_legato || self.glide_when == GlideWhen::Always;
+        let slides = is_legato || note.glide.is_some() || self.glide_when == GlideWhen::Always;
         Glide::new(from, 0.0, if slides { self.glide_seconds * octaves } else { 0.0 })
     }
 }

@@ -91,8 +91,7 @@ impl Pitch {
     /// Starts the first note of a voice, with a glide from the pitch of the note before.
     pub(super) fn start(&mut self, note: &Note, controls: &Controls, last_pitch: Option<f64>) {
         self.place(note, controls);
-        let from = last_pitch.unwrap_or(self.note) - self.note;
-        self.glide = self.tracking.glide(from, note.is_legato);
+        self.glide = self.tracking.glide(last_pitch.unwrap_or(self.note), note, note.is_legato);
         (self.offset, self.ratio, self.glide_start, self.vibrato_phase) = (0.0, 1.0, 0, 0.0);
     }
 
@@ -110,7 +109,7 @@ impl Pitch {
     /// key is down.
     pub(super) fn slide(&mut self, from: f64, note: &Note, controls: &Controls, is_legato: bool, clock: &Clock) {
         self.place(note, controls);
-        self.glide = self.tracking.glide(from - self.note, is_legato);
+        self.glide = self.tracking.glide(from, note, is_legato);
         self.glide_start = clock.age;
     }
 

@@ -4,6 +4,7 @@ use super::VoiceManager;
 use super::slot::State;
 use super::voice::Voice;
 use crate::engine::note::{Note, Notes};
+use crate::engine::portamento::NoteGlide;
 use crate::params::PlayMode;
 
 impl<V: Voice> VoiceManager<V> {
@@ -20,7 +21,7 @@ impl<V: Voice> VoiceManager<V> {
         if let Some(surplus) = self.held.surplus() {
             self.forget(|held| held.serial == surplus.serial);
         }
-        self.held.push(note);
+        self.held.push(Note { glide: note.glide.map(NoteGlide::back), ..note });
         let playing = self.slot_to_take_over(&note).map(|index| &self.slots.in_use()[index]);
         playing.is_none_or(|slot| !slot.key_down || self.priority.prefers(&note, &slot.note))
     }

@@ -176,10 +176,9 @@ fn read_header(
 ) -> Result<(Header, usize), String> {
     let mut chunk = song[..8 + data.len()].to_vec();
     match u16::from_be_bytes([data[0], data[1]]) {
-        0 | 1 => {}
-        2 => return Err("a MIDI file of type 2 (independent patterns): expected type 0 or 1".to_owned()),
+        0..=2 => {}
         kind => {
-            repair(format!("a MIDI file of type {kind}: expected type 0 or 1"))?;
+            repair(format!("a MIDI file of type {kind}: expected type 0, 1 or 2"))?;
             chunk[8..10].copy_from_slice(&[0, 1]);
         }
     }

@@ -1,6 +1,6 @@
 //! The master volume of system exclusive messages, as the volumes of all channels.
 
-use super::reader::MAX_EVENTS;
+use super::limits::MAX_EVENTS;
 use crate::engine::EventKind;
 use crate::engine::midi::controller::VOLUME;
 

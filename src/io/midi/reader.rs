@@ -2,7 +2,10 @@
 
 use super::container::Track;
 use super::fault::{Fault, Found, MOST_REPAIRS};
+use super::limits::MAX_EVENTS;
 use super::system_exclusive::system_exclusive;
+use super::tuning_standard;
+use super::unheeded::Unheeded;
 use crate::engine::EventKind;
 use crate::engine::midi::parse_message;
 use crate::io::bars::Bars;
@@ -12,9 +15,6 @@ use midly::{EventIter, MetaMessage, MidiMessage, Timing, TrackEvent, TrackEventK
 use std::fmt;
 use std::mem::discriminant;
 
-/// Maximum number of events in a song. Each takes 32 bytes of memory.
-pub const MAX_EVENTS: usize = 8_000_000;
-
 /// The contents of the tracks that were read so far.
 pub(super) struct TrackReader {
     /// Tick, channel and event.
@@ -23,7 +23,10 @@ pub(super) struct TrackReader {
     pub(super) tempos: Vec<(u64, u32)>,
     pub(super) last_tick: u64,
     pub(super) repairs: Vec<Repair>,
-    bars: Bars,
+    /// Tuning messages with their ticks.
+    pub(super) tunings: Vec<(u64, tuning_standard::Message)>,
+    pub(super) unheeded: Unheeded,
+    pub(super) bars: Bars,
     lenient: bool,
 }
 
@@ -58,7 +61,8 @@ impl fmt::Display for Repair {
 impl TrackReader {
     pub(super) fn new(timing: Timing, lenient: bool) -> Self {
         let (events, tempos, repairs) = (Vec::new(), Vec::new(), Vec::new());
-        Self { events, tempos, last_tick: 0, repairs, bars: Bars::new(timing), lenient }
+        let (tunings, unheeded) = (Vec::new(), Unheeded::default());
+        Self { events, tempos, last_tick: 0, repairs, tunings, unheeded, bars: Bars::new(timing), lenient }
     }
 
     /// Reads the track with this number. Errors name the position.
@@ -133,10 +137,22 @@ impl TrackReader {
         let tick = spot.tick;
         match event.kind {
             TrackEventKind::Midi { channel, message } => {
+                if let MidiMessage::Controller { controller, value } = message {
+                    let bars = &self.bars;
+                    let place = || format!("track {}, {}", spot.track, bars.place(tick));
+                    self.unheeded.control(controller.as_int(), value.as_int(), place);
+                }
                 self.events.extend(translate(channel, message).map(|(channel, kind)| (tick, channel, kind)));
             }
             TrackEventKind::SysEx(message) => {
-                self.events.extend(system_exclusive(message).into_iter().map(|(channel, kind)| (tick, channel, kind)));
+                let events = system_exclusive(message);
+                if let Some(tuning) = tuning_standard::Message::read(message) {
+                    self.tunings.push((tick, tuning));
+                } else if events.is_empty() {
+                    let bars = &self.bars;
+                    self.unheeded.exclusive(|| format!("track {}, {}", spot.track, bars.place(tick)));
+                }
+                self.events.extend(events.into_iter().map(|(channel, kind)| (tick, channel, kind)));
             }
             TrackEventKind::Meta(MetaMessage::Tempo(tempo)) if tempo == 0 => {
                 self.repair(spot, Fault::Tempo, "left out")?;

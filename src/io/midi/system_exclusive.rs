@@ -1,4 +1,4 @@
-//! Converts system exclusive messages to events: resets of General MIDI, GS and XG, master volumes, and GS drum parts.
+//! Converts system exclusive messages to events: resets of General MIDI, GS and XG, master volumes, and drum parts of GS and XG.
 
 use super::master_volume::ALL_CHANNELS;
 use crate::engine::EventKind;
@@ -31,6 +31,7 @@ pub(super) fn system_exclusive(message: &[u8]) -> Vec<(u8, EventKind)> {
         [0x7F, _, first, second, fine, coarse, 0xF7] if [*first, *second] == MASTER_VOLUME => {
             master_volume((f32::from(*coarse) * 128.0 + f32::from(*fine)) / 16_383.0)
         }
+        [0x43, _, 0x4C, 0x08, part @ 0..=15, 0x07, mode, 0xF7] => set_drums(*part, *mode > 0),
         [0x43, _, rest @ .., volume, 0xF7] if *rest == XG_MASTER_VOLUME => master_volume(f32::from(*volume) / 127.0),
         [0x41, _, model, set, rest @ ..] if [*model, *set] == GS_SET => match rest {
             _ if rest.starts_with(&GS_RESET) => reset(),
@@ -67,6 +68,12 @@ fn drum_part(part: u8, has_drums: bool) -> Vec<(u8, EventKind)> {
         1..=9 => part - 1,
         _ => part,
     };
+    set_drums(channel, has_drums)
+}
+
+/// Gives a channel drums or melodic sounds, at once. Yamaha's XG does so by part modes (08 nn 07: 0 is normal, others are drums), and
+/// part `nn` is channel `nn` (XG specification 1.26, 1996).
+fn set_drums(channel: u8, has_drums: bool) -> Vec<(u8, EventKind)> {
     vec![(channel, bank(if has_drums { DRUM_BANK } else { MELODIC_BANK })), (channel, EventKind::Program(0))]
 }
 
@@ -88,6 +95,9 @@ mod tests {
         assert_eq!(send(&[0x41, 0x10, 0x42, 0x12, 0x40, 0x11, 0x15, 0x01, 0x19, 0xF7])[1].0, 0);
         let off = send(&[0x41, 0x10, 0x42, 0x12, 0x40, 0x10, 0x15, 0x00, 0x1B, 0xF7]);
         assert_eq!(off[1], (DRUM_CHANNEL, EventKind::Program(0)));
+        let xg = send(&[0x43, 0x10, 0x4C, 0x08, 0x03, 0x07, 0x02, 0xF7]);
+        assert_eq!(xg[1], (3, EventKind::Program(MELODIC)));
+        assert_eq!(send(&[0x43, 0x10, 0x4C, 0x08, 0x03, 0x07, 0x00, 0xF7])[1], (3, EventKind::Program(0)));
         for reset in [
             &[0x7E, 0x7F, 0x09, 0x01, 0xF7][..],
             &[0x41, 0x10, 0x42, 0x12, 0x40, 0x00, 0x7F, 0x00, 0x41, 0xF7],

@@ -139,8 +139,8 @@ fn unfit_files_are_refused_with_a_reason() {
         (whole[..14].to_vec(), "declares 2 tracks and has 0"),
         (with(11, 3), "declares 3 tracks and has 2"),
         (with(11, 0), "declares 0 tracks and has 2"),
-        (with(9, 2), "a MIDI file of type 2 (independent patterns): expected type 0 or 1"),
-        (with(9, 7), "a MIDI file of type 7: expected type 0 or 1"),
+        (with(9, 2), "a MIDI file of type 2, whose tracks are patterns: expected --pattern 1 to 2"),
+        (with(9, 7), "a MIDI file of type 7: expected type 0, 1 or 2"),
         (with(13, 0).iter().enumerate().map(|(i, b)| if i == 12 { 0 } else { *b }).collect(), "the division is 0"),
         (with(12, 0x80), "found 128"),
         (with(12, 0x90), "found 112"),
@@ -318,7 +318,7 @@ fn lenient_reading_finds_all_tracks() {
             file(1, &[&track(60, 11), &[1, 2, 3], &track(61, 11)]),
             "after track 1, byte 33: 3 bytes belong to no track: left out",
         ),
-        (file(9, &[&track(60, 11), &track(61, 11)]), "a MIDI file of type 9: expected type 0 or 1"),
+        (file(9, &[&track(60, 11), &track(61, 11)]), "a MIDI file of type 9: expected type 0, 1 or 2"),
     ] {
         let (song, repairs) = Song::parse_leniently(&bytes, "x").unwrap();
         assert_eq!((keys(&song), repairs), (vec![60, 61], vec![repair.to_owned()]));

@@ -62,6 +62,13 @@ impl Tuning {
         Self(pitches)
     };
 
+    /// Gives a key another pitch. A key that does not exist is ignored. Real-time safe.
+    pub(crate) fn set(&mut self, key: u8, pitch: Pitch) {
+        if let Some(place) = self.0.get_mut(usize::from(key)) {
+            *place = Some(pitch);
+        }
+    }
+
     /// The tuning of a scale with a keyboard mapping; [`Keymap::LINEAR`] if there is no file.
     pub(crate) fn new(scale: &Scale, keymap: &Keymap) -> Self {
         Self(std::array::from_fn(|key| {

@@ -63,6 +63,7 @@ fn play_with(
             gain: 1.0,
             pan: 0.0,
             is_legato,
+            glide: None,
             contact: None,
         };
         if let OnPatch(_, patch) | OnChokePatch(_, _, patch) | Patch(patch) = *action {

@@ -1,0 +1,71 @@
+//! The stems of a song: a file for each, of the same length. They appear together when all are complete.
+
+use super::args::Args;
+use crate::interrupt;
+use crate::progress::Bar;
+use crate::terminal::{complain, complain_lines, counted, warn};
+use sprung::io::{FileFormat, Inputs, Output, Target, flac};
+use sprung::render::{on_threads, stems_of, to_stem_wavs};
+use sprung::request::Request;
+use sprung::{Error, Result};
+use std::fs;
+use std::path::Path;
+
+/// Renders a request into the stems of its song.
+pub(super) fn run(args: &Args, request: &Request, folder: &Path) -> Result<()> {
+    let format = args.format.unwrap_or(FileFormat::Wav);
+    format.check(args.bits, args.rate).map_err(|(option, message)| Error::value(format!("--{option}"), message))?;
+    let mut inputs = Inputs::default();
+    let prepared = request.prepare(&mut inputs, &mut warn)?;
+    let job = prepared.job();
+    let stems = stems_of(&job);
+    let is_new = !folder.exists();
+    fs::create_dir_all(folder).map_err(|source| Error::io(folder.display().to_string(), source))?;
+    let write = || {
+        let mut outputs = Vec::with_capacity(stems.len());
+        for stem in &stems {
+            let path = folder.join(format!("{}.{}", stem.name, format.ending()));
+            outputs.push(Output::create(&Target::Path(path), args.force, &inputs)?);
+        }
+        interrupt::catch(true)?;
+        let mut wavs = match format {
+            FileFormat::Wav => Vec::new(),
+            FileFormat::Flac => outputs.iter().map(Output::scratch).collect::<Result<_>>()?,
+        };
+        let into = if wavs.is_empty() { &mut outputs } else { &mut wavs };
+        let mut bar = Bar::new();
+        let progress = |progress| {
+            bar.show(progress);
+            interrupt::check()
+        };
+        let report = on_threads(args.threads, || to_stem_wavs(&job, &prepared.delivery, &stems, into, progress))??;
+        drop(bar);
+        for ((wav, output), is_wanted) in wavs.iter_mut().zip(&mut outputs).zip(&report.is_wanted) {
+            if *is_wanted {
+                let name = output.name().to_owned();
+                flac::encode(wav.stream(), output.stream(), &name)?;
+            }
+        }
+        let wanted = outputs.into_iter().zip(&report.is_wanted).filter(|(_, is_wanted)| **is_wanted);
+        wanted.map(|(output, _)| output.commit()).collect::<Result<Vec<()>>>().map(|written| (written.len(), report))
+    };
+    let (written, report) = write().inspect_err(|_| {
+        // Only a folder that is empty is removed.
+        let _ = is_new.then(|| fs::remove_dir(folder));
+    })?;
+    if report.clipped > 0 {
+        let clipped = report.clipped;
+        complain(
+            "warning",
+            format_args!("{clipped} samples clipped; lower the stems with --mix-gain-db, or keep them with --bits 32f"),
+        );
+    }
+    let seconds = report.rendered.frames as f64 / f64::from(args.rate);
+    complain_lines(&format!(
+        "{}: {} of {seconds:.3} s at {} Hz\n",
+        folder.display(),
+        counted(written, "stem"),
+        args.rate
+    ));
+    Ok(())
+}

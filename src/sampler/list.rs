@@ -1,0 +1,115 @@
+//! The list of finished samples, a line of JSON each: what a resumed run need not make again.
+
+use super::settings::Sampling;
+use crate::error::{Error, Result};
+use crate::preset::Playable;
+use serde_json::{Value, json};
+use std::fs::{self, File, OpenOptions};
+use std::io::Write;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+/// A finished sample.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Line {
+    /// The file, relative to the folder.
+    pub(super) file: String,
+    pub(super) frames: u64,
+    /// The first frame of its loop, and the one after the last.
+    pub(super) looped: Option<[u64; 2]>,
+    /// Seconds in which it falls by 60 dB when the key is let go; none if it rings on.
+    pub(super) release: Option<f64>,
+}
+
+/// The list, as it was at the start, and open to be continued.
+pub(super) struct List {
+    name: String,
+    known: Vec<Line>,
+    file: Mutex<File>,
+}
+
+impl Line {
+    fn parse(line: &str) -> Option<Self> {
+        let value: Value = serde_json::from_str(line).ok()?;
+        let ends = |value: &Value| Some([value[0].as_u64()?, value[1].as_u64()?]);
+        Some(Self {
+            file: value["file"].as_str()?.to_owned(),
+            frames: value["frames"].as_u64()?,
+            looped: ends(&value["loop"]),
+            release: value["release"].as_f64(),
+        })
+    }
+}
+
+impl List {
+    /// Opens the list of a folder. Its first line has the settings.
+    pub(super) fn open(sampling: &Sampling, playable: &Playable) -> Result<Self> {
+        let path = sampling.folder.join("samples.jsonl");
+        let name = path.display().to_string();
+        let failed = |source| Error::io(&name, source);
+        let settings = settings(sampling, playable);
+        let before = match fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
+            Err(error) => return Err(failed(error)),
+        };
+        // A line without an end was cut off when its writer was killed.
+        let whole = before.rfind('\n').map_or(0, |end| end + 1);
+        let mut lines = before[..whole].lines();
+        let first = lines.next();
+        if first.is_some() && !sampling.resume {
+            let message = "an instrument is there already: add --resume to go on with it, or choose another folder";
+            return Err(Error::value(&name, message));
+        }
+        if first.is_some_and(|first| first != settings) {
+            let message = "it has other settings, or another version has made it: expected the same, or another folder";
+            return Err(Error::value(&name, message));
+        }
+        let known = lines.filter_map(Line::parse).collect();
+        let file = OpenOptions::new().create(true).append(true).open(&path).map_err(failed)?;
+        file.set_len(whole as u64).map_err(failed)?;
+        let list = Self { name, known, file: Mutex::new(file) };
+        if first.is_none() {
+            list.write(&settings)?;
+        }
+        Ok(list)
+    }
+
+    /// The line of a file, if it was finished before and is there.
+    pub(super) fn find(&self, folder: &Path, file: &str) -> Option<Line> {
+        self.known.iter().find(|line| line.file == file && folder.join(file).is_file()).cloned()
+    }
+
+    /// Adds a finished sample.
+    pub(super) fn add(&self, line: &Line) -> Result<()> {
+        let Line { file, frames, looped, release } = line;
+        self.write(&json!({ "file": file, "frames": frames, "loop": looped, "release": release }).to_string())
+    }
+
+    fn write(&self, line: &str) -> Result<()> {
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        // In one write, so that a killed process leaves a whole line or the beginning of one.
+        file.write_all(format!("{line}\n").as_bytes()).map_err(|source| Error::io(&self.name, source))
+    }
+}
+
+/// All that a sample depends on.
+fn settings(sampling: &Sampling, playable: &Playable) -> String {
+    let Sampling { keys, every, velocities, strikes, length, rate, bits, format, seed, .. } = sampling;
+    let keys = keys.as_ref().map(|keys| [*keys.start(), *keys.end()]);
+    let settings = json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "sound": playable.to_toml(),
+        "keys": keys,
+        "every": every,
+        "velocities": velocities,
+        "strikes": strikes,
+        "length": length,
+        "rate": rate,
+        "bits": bits.bits(),
+        "float": *bits == crate::io::SampleFormat::Float32,
+        "format": format.ending(),
+        "seed": seed,
+    });
+    settings.to_string()
+}

@@ -1,0 +1,63 @@
+//! Renders one sample, cuts it, and finds its loop.
+
+use super::list::Line;
+use super::plan::{Plan, Take};
+use super::settings::Sampling;
+use super::strike::strike;
+use super::{release, steady};
+use crate::error::Result;
+use crate::io::{FileFormat, Inputs, Loop, Output, Target, WavFormat, WavWriter, flac};
+use crate::sound::Kit;
+use std::sync::Arc;
+
+/// The lowest level that belongs to a sample, −100 dBFS.
+const AUDIBLE: f32 = 1e-5;
+
+/// Seconds in which a sample fades out that is cut while it sounds.
+const FADE: f64 = 0.02;
+
+/// Makes a sample.
+pub(super) fn make(sampling: &Sampling, plan: &Plan, kit: &Arc<Kit>, take: &Take, inputs: &Inputs) -> Result<Line> {
+    let (zone, velocity) = (&plan.zones[take.zone], *plan.layers[take.layer].end());
+    let mut sound = strike(sampling, kit, zone.key, velocity, take.strike, [sampling.length, 0.0])?;
+    let whole = sound[0].len();
+    let is_audible = |sample: &f32| sample.abs() >= AUDIBLE;
+    let end = sound.iter().filter_map(|side| side.iter().rposition(is_audible)).max().map_or(0, |last| last + 1);
+    sound.iter_mut().for_each(|side| side.truncate(end));
+    let looped = if end == whole && !zone.rings_on { steady::find(&sound, sampling.rate) } else { None };
+    if end == whole && looped.is_none() {
+        fade(&mut sound, (FADE * f64::from(sampling.rate)) as usize);
+    }
+    let release = match zone.rings_on {
+        true => None,
+        false => release::seconds(sampling, kit, zone.key, velocity)?,
+    };
+    let file = plan.file(take, sampling);
+    // A run that is resumed replaces what an interrupted one left without a line.
+    let mut output = Output::create(&Target::Path(sampling.folder.join(&file)), sampling.resume, inputs)?;
+    let format = WavFormat { sample_rate: sampling.rate, channels: 2, samples: sampling.bits };
+    let write = |output: &mut Output| {
+        let (name, frames) = (output.name().to_owned(), end as u64);
+        let mut writer = match &looped {
+            None => WavWriter::new(output.stream(), &name, format, None, Some(frames))?,
+            Some(looped) => WavWriter::looped(output.stream(), &name, format, None, frames, looped)?,
+        };
+        writer.write(&sound[0], &sound[1])?;
+        writer.finish()
+    };
+    match sampling.format {
+        FileFormat::Wav => write(&mut output)?,
+        FileFormat::Flac => flac::through_wav(&mut output, write)?,
+    }
+    output.commit()?;
+    Ok(Line { file, frames: end as u64, looped: looped.map(|Loop { start, end }| [start, end]), release })
+}
+
+/// Fades out the last frames.
+fn fade(sound: &mut [Vec<f32>; 2], frames: usize) {
+    for side in sound {
+        let start = side.len().saturating_sub(frames);
+        let length = (side.len() - start) as f32;
+        side[start..].iter_mut().zip(0..).for_each(|(sample, n)| *sample *= 1.0 - (n + 1) as f32 / length);
+    }
+}
