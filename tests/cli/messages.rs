@@ -22,7 +22,7 @@ fn options_say_what_would_be_right() {
         ("--note 60 --gain-db -3,5 -o x.wav", "‘-3,5’ is not a number: expected -3.5, with a decimal point"),
         ("--note 60 --length 0,5 -o x.wav", "‘0,5’ is not a number: expected 0.5, with a decimal point"),
         ("--note 60 --rate CD -o x.wav", "‘CD’ is not a number: expected 1000 to 768000 Hz"),
-        ("--note 60 -p Kick -o x.wav", "there is no short '-p'; there is '--preset'"),
+        ("--note 60 -p Kick -o x.wav", "there is no short '-p'; there is '--pattern' and '--preset'"),
         ("--note 60 -n 61 -o x.wav", "there is no short '-n'; there is '--note' and '--normalize'"),
         ("--note 60", "name the file to write, as in '-o out.wav'"),
         ("--note 60 -o", "name the file to write, as in '-o out.wav'"),
