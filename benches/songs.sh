@@ -4,7 +4,8 @@
 # Installs what is missing from Debian's archive if that needs no password; the songs are unpacked into target/songs. Prints a
 # line a song, with tabs between: its name, and the user seconds that Sprung and FluidSynth take on one thread.
 # The two play in turn; each is the best of three.
-set -eu
+set -euo pipefail
+export LC_ALL=C
 root=$(cd "$(dirname "$0")/.." && pwd)
 sprung="$root/target/release/sprung"
 soundfont=/usr/share/sounds/sf2/FluidR3_GM.sf2

@@ -119,8 +119,6 @@ struct Locked {
     may_sound: Collector<Loaded>,
     /// How many states the host has loaded.
     loads: u64,
-    /// The positions of the knobs, if nothing has been loaded yet.
-    first: Option<[f32; PARAM_COUNT]>,
 }
 
 /// The state that the threads of one instance share: parameters, the loaded sound, and the rest.
@@ -142,8 +140,7 @@ impl Default for SprungParams {
         knobs.iter().zip(positions).for_each(|(knob, position)| knob.turn(position));
         let may_sound = Collector::default();
         may_sound.keep(&loaded);
-        let (complaints, loads, first) = (Arc::new([]), 0, Some(from_fn(|index| knobs[index].position())));
-        let locked = Locked { playable, view, complaints, loaded: loaded.clone(), may_sound, loads, first };
+        let locked = Locked { playable, view, complaints: Arc::new([]), loaded: loaded.clone(), may_sound, loads: 0 };
         let (link, extent) = (Link::default(), Extent::default());
         Self { knobs, slot: Slot::new(loaded), link, extent, locked: Mutex::new(locked) }
     }
@@ -202,12 +199,6 @@ impl SprungParams {
         self.locked().loads
     }
 
-    /// Whether nothing has been loaded and no knob moved since the instance was made. Not for the audio thread.
-    pub(crate) fn is_fresh(&self) -> bool {
-        let first = self.locked().first;
-        first.is_some_and(|first| first.iter().zip(&self.knobs).all(|(first, knob)| *first == knob.position()))
-    }
-
     /// Loads a sound, its knob positions and the rest at once. Not for the audio thread: it computes the sound, and
     /// frees sounds that are no longer played. Does not notify the host. Returns the loaded sound.
     ///
@@ -216,7 +207,7 @@ impl SprungParams {
     pub(crate) fn load(&self, Read { state, complaints }: Read) -> Arc<Loaded> {
         let loaded = Arc::new(state.loaded());
         let mut locked = self.locked();
-        (locked.playable, locked.first) = (state.playable, None);
+        locked.playable = state.playable;
         if !self.extent.is_open() {
             locked.view = state.view;
         }

@@ -8,10 +8,13 @@ use crate::dsp::random;
 use crate::error::{Error, Result};
 use std::io::{Seek, SeekFrom, Write};
 
+/// Bytes that are written at a time.
+const WRITTEN_AT_ONCE: usize = 1 << 16;
+
 /// Writes blocks of frames to a WAV file: RIFF up to 4 GiB, RF64 (EBU Tech 3306) for longer files.
 pub struct WavWriter<W: Write + Seek> {
     out: W,
-    /// The bytes of a block.
+    /// Bytes that are not written yet.
     bytes: Vec<u8>,
     name: String,
     format: WavFormat,
@@ -85,7 +88,6 @@ impl<W: Write + Seek> WavWriter<W> {
         let bits = self.format.samples.bits();
         let channels = &[left, right][..self.format.channels.into()];
         let frames = channels.iter().map(|samples| samples.len()).min().unwrap_or(0);
-        self.bytes.clear();
         for index in 0..frames {
             let n = self.frames + index as u64;
             for (channel, samples) in channels.iter().enumerate() {
@@ -98,7 +100,12 @@ impl<W: Write + Seek> WavWriter<W> {
             }
         }
         self.frames += frames as u64;
-        self.out.write_all(&self.bytes).map_err(|source| Error::io(&self.name, source))
+        if self.bytes.len() < WRITTEN_AT_ONCE {
+            return Ok(());
+        }
+        let written = self.out.write_all(&self.bytes).map_err(|source| Error::io(&self.name, source));
+        self.bytes.clear();
+        written
     }
 
     /// Number of samples so far that were clipped. Only integers are.
@@ -119,6 +126,7 @@ impl<W: Write + Seek> WavWriter<W> {
     }
 
     fn complete(&mut self) -> std::io::Result<()> {
+        self.out.write_all(&self.bytes)?;
         if riff::padding(self.frames * self.format.frame_len()) == 1 {
             self.out.write_all(&[0])?;
         }

@@ -9,10 +9,11 @@ use libm::sqrt;
 /// A voice is over when the sum of its modes is below this amplitude, −120 dBFS, for any phases.
 const SILENCE: f64 = 1e-6;
 
-/// The modes of a voice that are set to rest before it is over add up to a smaller amplitude than this, −130 dBFS, for any
-/// phases: so they change neither what is heard nor, by more than a tenth of its energy, the time at which it is over. (If a
-/// body that blooms is struck again, the cascade starts such modes in a phase of their own, as all modes at rest.)
-const LEFT_OUT: f64 = 3.2e-7;
+/// Modes that are set to rest before their voice is over. Together they stay below this amplitude, −150 dBFS, whatever their
+/// phases, at the voice's present gain (1 if that is less) and before effects. They have at most a thousandth of the energy at
+/// which a voice is over, so its end moves by T60/14,000 at most. If the body blooms later, they start in a new phase, as all
+/// modes at rest do.
+const LEFT_OUT: f64 = 3.2e-8;
 
 /// Control ticks between two measurements of the energy. Below −110 dBFS it is measured at every tick.
 const MEASURING_TICKS: u32 = 8;

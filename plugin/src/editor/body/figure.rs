@@ -11,7 +11,7 @@ pub(crate) struct Figure {
     pub(super) grid: [usize; 2],
     pub(super) points: Vec<Point>,
     pub(super) tint: Color32,
-    /// Thickness of a line as a share of the picture's height; 0 for a string.
+    /// Thickness of a line as a share of the picture's shorter side; 0 for a string. It only tells bars from tubes.
     pub(super) thickness: f32,
 }
 
@@ -32,7 +32,7 @@ impl Figure {
             Form::Bell | Form::Bowl => [9, 25],
         };
         let figure = Self::with_grid(body, form, grid);
-        // A bar of its true thickness would be a line.
+        // At this size a bar would look like a line.
         Self { thickness: 2.0 * figure.thickness, ..figure }
     }
 

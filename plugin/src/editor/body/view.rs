@@ -10,8 +10,9 @@ use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::modes::table::replace;
+use crate::editor::theme::RADIUS;
 use crate::loaded::Loaded;
-use egui::{CursorIcon, Id, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
+use egui::{CursorIcon, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo};
 use sprung::params::Param;
 use sprung::sound::bodies::Point;
 use std::f32::consts::TAU;
@@ -127,7 +128,7 @@ impl BodyView {
         let found = pointer.or(response.hover_pos()).map(|pointer| shape.figure.form.nearest(rect, pointer));
         let point = found.map(|(point, _)| confined(point, shape));
         if let Some(point) = point {
-            *controls.hint = Hint::new(describe(point, shape), "Drag to where it is struck.");
+            *controls.hint = Hint::new(describe(point, shape), "Click or drag to where it is struck.");
         }
         let is_pressed = pointer.is_some() && ui.input(|input| input.pointer.any_pressed());
         if is_pressed && self.drag.is_none() && found.is_some_and(|(_, distance)| distance <= REACH) {
@@ -137,7 +138,16 @@ impl BodyView {
                 self.drag = Some(Drag { point, written: None, velocity, next: now, loaded });
             }
         }
-        let Some(drag) = &mut self.drag else { return };
+        if response.has_focus() {
+            ui.painter().rect_stroke(rect, RADIUS, Stroke::new(1.5, controls.palette.text), StrokeKind::Inside);
+        }
+        let Some(drag) = &mut self.drag else {
+            // Pressed and let go between two passes, beside the body, or by the keyboard.
+            if response.clicked() {
+                audition.strike(shown.guide().home, velocity(ui), now, controls.params.link());
+            }
+            return;
+        };
         let is_over = pointer.is_none();
         if let Some(point) = point.filter(|_| !is_over) {
             drag.point = point;
@@ -171,9 +181,12 @@ impl BodyView {
     }
 }
 
-/// The velocity of a strike by a click: the faster the pointer moves, the harder.
+/// Added to the velocity for each pixel a second at which the pointer moves: 1500 give full velocity.
+const PER_SPEED: f32 = 0.0002;
+
+/// The velocity of a strike by a click: that of a pointer at rest, or more if it moves.
 pub(crate) fn velocity(ui: &Ui) -> f32 {
-    (VELOCITY + 0.0002 * ui.input(|input| input.pointer.velocity().length())).min(1.0)
+    (VELOCITY + PER_SPEED * ui.input(|input| input.pointer.velocity().length())).min(1.0)
 }
 
 /// The exciter that has a place, for a table of modes: the pluck if it is on, or else the bow if it is on.

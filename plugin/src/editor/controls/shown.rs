@@ -21,7 +21,12 @@ impl Shown {
         let playable = params.state().playable;
         let guide = match &playable {
             Playable::Preset(preset) => preset.guide.clone(),
-            Playable::Kit(_) => Guide::default(),
+            // The key of the sound whose modes and body are shown.
+            Playable::Kit(_) => {
+                let shows = |key: &u8| loaded.kit.pad(*key).is_some_and(|pad| pad.sound == 0);
+                let guide = Guide::default();
+                Guide { home: (0..128).find(shows).unwrap_or(guide.home), ..guide }
+            }
         };
         Self { loaded, playable, guide }
     }

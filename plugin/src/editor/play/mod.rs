@@ -4,21 +4,21 @@ mod movers;
 mod stage;
 mod things;
 
-use crate::editor::body::view::BodyView;
+use crate::editor::body::view::{BodyView, velocity};
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
-use crate::editor::keyboard::audition::Audition;
+use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::routes::Ring;
-use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, SMALL, TITLE_HEIGHT};
+use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, RADIUS, SMALL, TITLE_HEIGHT};
 use crate::editor::widgets::knob;
 use crate::editor::widgets::text::line;
 use crate::link::Link;
-use egui::{Align2, Rect, ScrollArea, Sense, Ui, UiBuilder, vec2};
+use egui::{Align2, Rect, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, vec2};
 use sprung::params::{PARAMS, Param, ParamInfo};
 use std::time::Duration;
 
-/// The smallest height of a page with titles, and with all tiles.
-const TALL: f32 = 420.0;
+/// The smallest height of a page with titles and tiles: 330 for the tiles of bodies and materials, and the rest for knobs and gaps.
+const TALL: f32 = 456.0;
 /// Width of the columns beside the body, on a page that is tall and on one that is not.
 const SIDES: [[f32; 2]; 2] = [[126.0, 170.0], [52.0, 130.0]];
 
@@ -54,7 +54,7 @@ impl PlayPage {
         self.audition.release(link);
     }
 
-    /// Shows the page for the energies of the modes. Returns a message.
+    /// Shows the page for the energies of the modes. Returns why a body could not be made, if it could not.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
@@ -82,7 +82,7 @@ impl PlayPage {
             let at = inner.with_min_x(inner.right() - right);
             let changed = self.things.show(ui, at, is_tall, shown, controls);
             if is_moved || changed.is_some() {
-                self.audition.strike(shown.guide().home, crate::editor::keyboard::audition::VELOCITY, now, link);
+                self.audition.strike(shown.guide().home, VELOCITY, now, link);
             }
             message = changed.and_then(Result::err);
         }
@@ -102,15 +102,17 @@ impl PlayPage {
         let response = ui.interact(middle, egui::Id::unique("stage"), Sense::click());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Strike"));
         let is_struck = response.clicked();
+        if response.has_focus() {
+            ui.painter().rect_stroke(middle, RADIUS, Stroke::new(1.5, palette.text), StrokeKind::Inside);
+        }
         let caption = self.body.show(ui, rect, shown, energies, &mut self.audition, controls);
         if is_struck {
             let now = ui.input(|input| input.time);
-            let velocity = crate::editor::body::view::velocity(ui);
-            self.audition.strike(shown.guide().home, velocity, now, controls.params.link());
+            self.audition.strike(shown.guide().home, velocity(ui), now, controls.params.link());
         }
         let text = match (shown.preset(), self.was_played) {
-            (None, _) => "A kit: each key has a body of its own. Click to strike the first.".to_owned(),
-            (_, false) => "Click it to strike it, drag to strike it elsewhere.".to_owned(),
+            (None, _) => "A kit: each key has a body of its own. A click strikes this one.".to_owned(),
+            (_, false) => "Click where it is to be struck.".to_owned(),
             (_, true) => caption,
         };
         let under = middle.with_min_y(middle.bottom() - 44.0).with_max_y(middle.bottom() - 26.0);
@@ -133,7 +135,7 @@ fn knobs(ui: &mut Ui, rect: Rect, title: f32, shown: &Shown, controls: &mut Cont
     let essentials = ESSENTIALS.into_iter().filter(|(param, _)| matters(param));
     let essentials = essentials.map(|(param, name)| (param.info(), name.to_owned())).collect();
     let groups: [(&str, Vec<_>); 3] =
-        [("MACROS", macros), ("ESSENTIALS", essentials), ("OUTPUT", vec![(Param::Gain.info(), "Volume".to_owned())])];
+        [("MACROS", macros), ("ESSENTIALS", essentials), ("OUTPUT", vec![(Param::Gain.info(), "Gain".to_owned())])];
     let count: usize = groups.iter().map(|(_, knobs)| knobs.len()).sum();
     let gaps = groups.iter().filter(|(_, knobs)| !knobs.is_empty()).count() as f32 * 2.0 * GAP;
     let inside = rect.shrink(PADDING);

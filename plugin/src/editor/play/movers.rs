@@ -66,9 +66,10 @@ pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) 
             ui.painter().circle_stroke(lamp.center(), 3.0, Stroke::new(1.0, palette.muted));
         }
     }
-    let Some((param, name, level)) = alone else { return false };
-    act_alone(param, name, level, controls);
-    true
+    if let Some((param, name, level)) = alone {
+        act_alone(param, name, level, controls);
+    }
+    alone.is_some()
 }
 
 fn is_on(param: Param, controls: &Controls) -> bool {
@@ -81,13 +82,14 @@ fn act_alone(param: Param, name: &str, level: f32, controls: &mut Controls) {
     let mut state = controls.params.state();
     let Playable::Preset(preset) = &mut state.playable else { return };
     preset.patch.values = state.values;
-    for (other, ..) in MOVERS {
-        let value = match (other == param, is_on(other, controls)) {
-            (true, true) => continue,
-            (true, false) => level,
-            (false, _) => other.info().min,
-        };
-        preset.patch.set(other, value);
+    let wanted = |other: Param| other == param;
+    let changed = MOVERS.into_iter().filter(|(other, ..)| wanted(*other) != is_on(*other, controls));
+    let changed: Vec<Param> = changed.map(|(other, ..)| other).collect();
+    if changed.is_empty() {
+        return;
+    }
+    for other in changed {
+        preset.patch.set(other, if wanted(other) { level } else { other.info().min });
     }
     controls.history.begin(controls.params);
     load(state.playable, controls.params, controls.host);

@@ -44,7 +44,7 @@ pub(super) fn paint_floor(painter: &Painter, stage: Rect, middle: Rect, controls
     let mix = if space > 0.0 { controls.value(Param::SpaceMix.info()) / 100.0 } else { 0.0 };
     let line = Stroke::new(1.2, palette.line.lerp_to_gamma(palette.accent, 0.15 + 0.6 * mix));
     let centre = pos2(middle.center().x, stage.top() + 0.84 * stage.height());
-    match controls.value(Param::Space.info()) as usize {
+    match space as usize {
         1 => (1..=5).for_each(|ring| ellipse(&painter, centre, ring as f32 * 0.085 * stage.width(), line)),
         2 => (0..3).for_each(|coil| {
             spring(&painter, [left, right], far + (stage.bottom() - far) * (0.2 + 0.22 * coil as f32), line)

@@ -1,19 +1,14 @@
 //! The page that a window opens with.
 
-use super::fake_host::FakeHost;
 use super::pictures::{compare, compare_exactly, compare_small, facing, finish};
 use super::sounding::Band;
 use crate::editor::body::origin::Origin;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
-use crate::editor::window::{Face, Window};
+use crate::editor::window::Face;
 use crate::link::Touch;
-use crate::params::SprungParams;
-use crate::state::State;
 use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use sprung::params::Param;
-use sprung::preset::Playable;
-use std::sync::Arc;
 
 impl Band {
     fn click(&mut self, role: Role, name: &str) {
@@ -91,19 +86,22 @@ fn a_body_that_is_clicked_sounds() {
 }
 
 #[test]
-fn a_first_window_brings_a_sound_with_a_body_and_a_later_one_nothing() {
-    let (params, host) = (Arc::new(SprungParams::default()), Arc::new(FakeHost::default()));
-    let open = || Window::new(params.clone(), None).open(host.context());
-    open();
-    assert_eq!(params.name(), "Church Bell");
-    let State { seed, view, .. } = params.state();
-    params.load(State::new(Playable::find("Init").unwrap(), seed, view).into());
-    open();
-    assert_eq!(params.name(), "init");
-    let params = Arc::new(SprungParams::default());
-    params.knobs()[Param::Decay as usize].turn(0.1);
-    Window::new(params.clone(), None).open(host.context());
-    assert_eq!(params.name(), "Init");
+fn a_click_within_one_pass_and_a_kit_sound_too() {
+    let mut band = playing("Church Bell");
+    let place = band.rect("Struck body").center();
+    band.press(place, true);
+    band.press(place, false);
+    band.passes(3);
+    assert_eq!(band.strikes(), 1);
+    let mut band = playing("Acoustic Kit");
+    let place = band.rect("Strike").center();
+    band.press(place, true);
+    band.press(place, false);
+    band.passes(3);
+    let kit = band.stage.params.loaded().kit.clone();
+    let struck =
+        band.heard.iter().find_map(|touch| if let Touch::Down { key, .. } = touch { Some(*key) } else { None });
+    assert_eq!(kit.pad(struck.unwrap()).unwrap().sound, 0, "the sound whose body is shown");
 }
 
 #[test]

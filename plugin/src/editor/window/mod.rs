@@ -8,7 +8,6 @@ mod status;
 mod variation;
 
 use crate::editor::browser::Browser;
-use crate::editor::controls::files::load;
 use crate::editor::controls::history::History;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, FRAME, Interaction};
@@ -34,7 +33,6 @@ use header::{Header, Request};
 use meter::Meter;
 use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
-use sprung::preset::Playable;
 use sprung::preset::library::Library;
 use status::{Load, StatusLine};
 use std::collections::BTreeSet;
@@ -43,9 +41,6 @@ use std::sync::Arc;
 
 /// Longest time in seconds by which moving pictures go on in one pass: after a pause they go on where they were.
 const LONGEST: f32 = 0.25;
-
-/// The sound of a first window.
-const INVITING: &str = "Church Bell";
 
 /// The view that is shown in place of modes and parameters.
 #[derive(Clone, Copy, PartialEq)]
@@ -140,14 +135,7 @@ impl Window {
     }
 
     /// Prepares the window for being shown by a host.
-    ///
-    /// A plain sine invites nobody: the first window of an instance in which nothing was loaded brings a sound with a body.
     pub(super) fn open(&mut self, host: GuiContext) {
-        if self.params.is_fresh()
-            && let Ok(inviting) = Playable::find(INVITING)
-        {
-            load(inviting, &self.params, &host);
-        }
         self.host = Some(host);
         self.applied = None;
     }

@@ -61,6 +61,9 @@ fn run_script(script: &str, to: &Path) -> Result<(), String> {
     let script = root().join(script);
     let output = Command::new(&script).stderr(std::process::Stdio::inherit()).output();
     let output = output.map_err(|error| format!("{}: {error}", script.display()))?;
+    if !output.status.success() {
+        return Err(format!("{} failed", script.display()));
+    }
     fs::write(to, output.stdout).map_err(|error| format!("{}: {error}", to.display()))
 }
 
