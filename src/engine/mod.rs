@@ -48,7 +48,7 @@ pub(crate) use ensemble::Stems;
 pub use event::{Event, EventKind, Expression};
 #[cfg(feature = "fit")]
 pub(crate) use modulation::Lfo;
-pub use note::{Note, NoteId, Notes};
+pub use note::{EndedNote, Note, NoteId, Notes};
 pub use snapshot::{Snapshot, SoundingNote};
 pub(crate) use synth::PadGroup;
 pub use synth::Synth;

@@ -83,6 +83,19 @@ impl Note {
     };
 }
 
+/// What is left to tell of a note that has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EndedNote {
+    /// MIDI channel, 0–15.
+    pub channel: u8,
+    /// MIDI key, 0–127.
+    pub key: u8,
+    /// As [`Note::id`].
+    pub id: Option<NoteId>,
+    /// As [`Note::serial`].
+    pub serial: u64,
+}
+
 /// Selects notes of a synth: those that match every field that is not none. A synth ignores the event's own channel; an
 /// ensemble uses it to choose the synth, as for every event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

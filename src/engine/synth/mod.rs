@@ -8,7 +8,7 @@ mod pads;
 mod process;
 
 use super::controls::Controls;
-use super::note::{Note, nearest_channel, nearest_key};
+use super::note::{EndedNote, Note, nearest_channel, nearest_key};
 use super::space::{Space, needs_bodies};
 use super::voice::SynthVoice;
 use super::voice_manager::{Footprint, PlayMode, Priority, VoiceManager, VoicePool};
@@ -203,7 +203,7 @@ impl Synth {
 
     /// Finished notes, kept until the next [`Synth::process`]. Each is reported once: when its voice is silent or plays
     /// another note, and no held key will return to it. At most `MAX_ENDED` are kept; the rest are not reported.
-    pub fn ended(&self) -> &[Note] {
+    pub fn ended(&self) -> &[EndedNote] {
         self.manager.ended()
     }
 

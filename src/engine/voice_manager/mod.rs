@@ -12,7 +12,7 @@ mod slot;
 mod slots;
 mod voice;
 
-use super::note::{Note, Notes};
+use super::note::{EndedNote, Note, Notes};
 pub use crate::params::{PlayMode, Priority};
 pub use footprint::Footprint;
 use held_keys::HeldKeys;
@@ -40,7 +40,7 @@ pub(crate) struct VoiceManager<V: Voice> {
     /// The keys that are down in a monophonic mode.
     held: HeldKeys,
     /// Ended notes: no voice plays them, and no held key will start them again. Kept until [`VoiceManager::clear_ended`].
-    ended: Vec<Note>,
+    ended: Vec<EndedNote>,
     peak: usize,
 }
 
@@ -83,7 +83,7 @@ impl<V: Voice> VoiceManager<V> {
 
     /// The notes that have ended since the last [`VoiceManager::clear_ended`], in order of their ends. Each note
     /// appears once. Notes beyond the first [`MAX_ENDED`] are lost.
-    pub(crate) fn ended(&self) -> &[Note] {
+    pub(crate) fn ended(&self) -> &[EndedNote] {
         &self.ended
     }
 
@@ -166,7 +166,8 @@ impl<V: Voice> VoiceManager<V> {
         let has_note = |slot: &Slot<V>| !slot.is_free() && slot.note.serial == note.serial;
         let is_held = self.held.as_slice().iter().any(|held| held.serial == note.serial);
         if !is_held && !self.slots.in_use().iter().any(has_note) && self.ended.len() < MAX_ENDED {
-            self.ended.push(note);
+            let Note { channel, key, id, serial, .. } = note;
+            self.ended.push(EndedNote { channel, key, id, serial });
         }
     }
 
