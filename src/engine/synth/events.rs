@@ -87,7 +87,10 @@ impl Synth {
     /// Starts a note. The pad, the sound and the soft pedal complete it first.
     fn note_on(&mut self, mut note: Note) {
         let Some(instrument) = self.instruments.start(&mut note, self.clock) else {
-            return self.manager.turn_away(note);
+            if !self.leaves_out_notes {
+                self.manager.turn_away(note);
+            }
+            return;
         };
         note.soft = self.channels.is_soft(note.channel);
         if instrument.has_routes() {
@@ -98,6 +101,10 @@ impl Synth {
             if !has_room(capacity, self.manager.pool().free(), need) {
                 make_room(std::slice::from_mut(&mut self.manager), |manager| manager, capacity, need);
             }
+        }
+        if self.leaves_out_notes {
+            instrument.last_pitch = Some(instrument.pitch(&note));
+            return;
         }
         if self.manager.note_on(instrument, note) {
             instrument.last_pitch = Some(instrument.pitch(&note));
