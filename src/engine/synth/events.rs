@@ -115,11 +115,13 @@ impl Synth {
         }
     }
 
-    /// Gives a key another pitch, in semitones on the MIDI scale, and moves its sounding notes there if `sounding` says so.
+    /// Gives a key another pitch, in semitones on the MIDI scale, and moves the sounding notes that have its pitch there if `sounding`
+    /// says so.
     fn tune(&mut self, key: u8, pitch: f32, sounding: bool) {
         let pitch = Pitch::Semitones(pitch.into());
         self.instruments.tune(key, pitch);
-        for (note, voice) in self.manager.active().filter(|(note, _)| sounding && note.key == key) {
+        let kit = self.instruments.kit();
+        for (note, voice) in self.manager.active().filter(|(note, _)| sounding && kit.follows(note.key, key)) {
             if let Some(instrument) = self.instruments.of_note(note) {
                 let by = instrument.pitch(&Note { pitch, ..*note }) - instrument.pitch(note);
                 let brightness = self.channels.brightness(note.channel);
