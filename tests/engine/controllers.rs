@@ -96,6 +96,12 @@ fn modes_are_those_that_the_controllers_choose() {
         assert_eq!(voices(&patch(), first), count, "{first:?}");
     }
     assert_eq!(voices(&mono, &[control(0, 127, 0)]), 3);
+    let poly = Event { channel: 1, ..control(0, 127, 0) };
+    assert_eq!(
+        voices(&patch(), &[control(0, 126, 1), poly, control(0, 126, 1)]),
+        1,
+        "the last message of all channels"
+    );
 }
 
 /// With the footswitch down, a key that is pressed while another is down moves the pitch and does not strike.
