@@ -144,7 +144,7 @@ pub fn to_stem_wavs(
     };
     let channels = if delivery.mono { 1 } else { 2 };
     let format = WavFormat { sample_rate: job.options.sample_rate, channels, samples: delivery.samples };
-    let expected = job.known_frames().unwrap_or(job.song_frames());
+    let expected = job.least_frames();
     if let Some(first) = outputs.first() {
         first.check_room(format.file_len(expected)?.saturating_mul(stems.len() as u64))?;
     }
