@@ -42,13 +42,17 @@ pub(super) fn run(args: &Args, request: &Request, folder: &Path) -> Result<()> {
         };
         let report = on_threads(args.threads, || to_stem_wavs(&job, &prepared.delivery, &stems, into, progress))??;
         drop(bar);
-        for ((wav, output), is_wanted) in wavs.iter_mut().zip(&mut outputs).zip(&report.is_wanted) {
+        // A file of an earlier run that is in the place of an inaudible stem is replaced too: it would belong to another mix.
+        let exists = |output: &Output| Path::new(output.name()).exists();
+        let is_wanted: Vec<bool> =
+            outputs.iter().zip(&report.is_wanted).map(|(output, wanted)| *wanted || exists(output)).collect();
+        for ((wav, output), is_wanted) in wavs.iter_mut().zip(&mut outputs).zip(&is_wanted) {
             if *is_wanted {
                 let name = output.name().to_owned();
                 flac::encode(wav.stream(), output.stream(), &name)?;
             }
         }
-        let wanted = outputs.into_iter().zip(&report.is_wanted).filter(|(_, is_wanted)| **is_wanted);
+        let wanted = outputs.into_iter().zip(&is_wanted).filter(|(_, is_wanted)| **is_wanted);
         wanted.map(|(output, _)| output.commit()).collect::<Result<Vec<()>>>().map(|written| (written.len(), report))
     };
     let (written, report) = write().inspect_err(|_| {
