@@ -145,9 +145,6 @@ fn pattern_track(header: &Header, tracks: usize, pattern: Option<u16>) -> Result
         (Format::Sequential, Some(pattern)) if (1..=tracks).contains(&pattern.into()) => {
             Ok(Some(usize::from(pattern) - 1))
         }
-        (Format::Sequential, _) if tracks == 0 => {
-            Err("a MIDI file of type 2 without tracks: expected one that has a pattern".to_owned())
-        }
         (Format::Sequential, _) => {
             Err(format!("a MIDI file of type 2, whose tracks are patterns: expected --pattern 1 to {tracks}"))
         }
