@@ -43,7 +43,7 @@ mod tests {
         let chunk = sampler_chunk(48_000, &Loop { start: 100, end: 300 }, 57);
         let number = |at: usize| u32::from_le_bytes([chunk[at], chunk[at + 1], chunk[at + 2], chunk[at + 3]]);
         assert_eq!((&chunk[..4], number(4), chunk.len()), (&b"smpl"[..], 60, 68));
-        assert_eq!([number(16), number(20), number(36), number(52), number(56)], [20_833, 60, 1, 100, 299]);
+        assert_eq!([number(16), number(20), number(36), number(52), number(56)], [20_833, 57, 1, 100, 299]);
         for nothing in [Loop::whole(0), Loop { start: 5, end: 5 }, Loop::whole(1 << 33)] {
             assert!(sampler_chunk(48_000, &nothing, 57).is_empty());
         }
