@@ -7,8 +7,7 @@ mod report;
 mod stems;
 
 pub(super) use args::Args;
-use sprung::io::{FileFormat, Target, WavFormat};
-use sprung::render::Job;
+use sprung::io::Target;
 use sprung::{Error, Result};
 
 pub(super) const EXAMPLES: &str = "\
@@ -34,11 +33,4 @@ pub(super) fn run(args: &Args) -> Result<()> {
         (None, Some(output)) => output::run(args, &request, &Target::new(output)),
         (None, None) => Err(Error::value("--output", "expected it, or --stems")),
     }
-}
-
-/// Checks that a rendering fits into a file format, as far as its length is known.
-fn check_length(args: &Args, format: FileFormat, job: &Job) -> Result<()> {
-    let channels = if args.mono { 1 } else { 2 };
-    let wav = WavFormat { sample_rate: args.rate, channels, samples: args.bits };
-    format.check_length(&wav, if args.is_loop { job.song_frames() } else { job.least_frames() })
 }

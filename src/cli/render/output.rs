@@ -1,7 +1,7 @@
 //! The one file of a rendering: WAV or FLAC, as it is or as a loop.
 
 use super::args::Args;
-use super::{check_length, figure, report};
+use super::{figure, report};
 use crate::progress::Bar;
 use crate::terminal::warn;
 use crate::{interrupt, recording};
@@ -21,7 +21,7 @@ pub(super) fn run(args: &Args, request: &Request, target: &Target) -> Result<()>
     let mut inputs = Inputs::default();
     let prepared = request.prepare(&mut inputs, &mut warn)?;
     let (job, delivery) = (prepared.job(), &prepared.delivery);
-    check_length(args, format, &job)?;
+    args.check_length(format, &job)?;
     if args.json {
         inputs.check_stdout()?;
     }

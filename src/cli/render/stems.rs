@@ -1,7 +1,6 @@
 //! The stems of a song: a file for each, of the same length. None gets its name before all are complete.
 
 use super::args::Args;
-use super::check_length;
 use crate::interrupt;
 use crate::progress::Bar;
 use crate::terminal::{complain, complain_lines, counted, warn};
@@ -19,7 +18,7 @@ pub(super) fn run(args: &Args, request: &Request, folder: &Path) -> Result<()> {
     let mut inputs = Inputs::default();
     let prepared = request.prepare(&mut inputs, &mut warn)?;
     let job = prepared.job();
-    check_length(args, format, &job)?;
+    args.check_length(format, &job)?;
     let stems = stems_of(&job);
     let is_new = !folder.exists();
     fs::create_dir_all(folder).map_err(|source| Error::io(folder.display().to_string(), source))?;
