@@ -90,7 +90,7 @@ pub fn parse_message(bytes: &[u8]) -> Option<(u8, EventKind)> {
 }
 
 /// Converts a controller's value 0–1 to MIDI's 0–127.
-pub(super) fn seven_bits(value: f32) -> u8 {
+pub(crate) fn seven_bits(value: f32) -> u8 {
     (value * 127.0 + 0.5) as u8
 }
 

@@ -1,6 +1,6 @@
 //! Turns WAV files of integers into FLAC files.
 
-use super::file_format::HIGHEST_RATE;
+use super::file_format::{HIGHEST_RATE, check_wav_length};
 use super::output::Output;
 use crate::error::{Error, Result};
 use flacenc::bitsink::ByteSink;
@@ -38,9 +38,10 @@ pub fn through_wav<T>(output: &mut Output, write: impl FnOnce(&mut Output) -> Re
 /// and chosen by counting bits, so no floating point takes part. Memory use does not grow with the length.
 ///
 /// # Errors
-/// [`Error::Value`] for floats and for rates above [`HIGHEST_RATE`], [`Error::Io`] if reading or writing fails.
+/// [`Error::Value`] for floats, for rates above [`HIGHEST_RATE`] and for longer files, [`Error::Io`] if reading or writing fails.
 pub fn encode(wav: &mut File, out: &mut File, name: &str) -> Result<()> {
     let failed = |source| Error::io(name, source);
+    check_wav_length(wav.seek(SeekFrom::End(0)).map_err(failed)?)?;
     wav.seek(SeekFrom::Start(0)).map_err(failed)?;
     let reader = hound::WavReader::new(BufReader::new(wav)).map_err(|error| wrong(name, error))?;
     let hound::WavSpec { channels, sample_rate, bits_per_sample, sample_format } = reader.spec();

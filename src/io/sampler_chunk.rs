@@ -16,19 +16,19 @@ impl Loop {
     }
 }
 
-/// The key that a chunk names if the sound has none of its own: middle C, as most programs write it.
-const MIDDLE_C: u32 = 60;
+/// The key that a chunk names if the sound has none of its own: as most programs write it.
+pub(crate) const MIDDLE_C: u8 = 60;
 
-/// The chunk of a loop that is played forwards for ever (Multimedia Data Standards Update, 1994). Empty if it has no frames, or if
+/// The chunk of a loop of a sound that has its own pitch on a key. The loop is played forwards for ever (Multimedia Data Standards Update, 1994). Empty if it has no frames, or if
 /// its place does not fit into 32 bits.
-pub(super) fn sampler_chunk(sample_rate: u32, looped: &Loop) -> Vec<u8> {
+pub(super) fn sampler_chunk(sample_rate: u32, looped: &Loop, key: u8) -> Vec<u8> {
     let last = looped.end.checked_sub(1).filter(|last| *last >= looped.start);
     let [Some(start), Some(last)] = [Some(looped.start), last].map(|frame| u32::try_from(frame?).ok()) else {
         return Vec::new();
     };
     let period = 1_000_000_000 / sample_rate.max(1);
     // Manufacturer, product, nanoseconds per frame, key, cents above it, SMPTE format and offset, number of loops, further data.
-    let header = [0, 0, period, MIDDLE_C, 0, 0, 0, 1, 0];
+    let header = [0, 0, period, key.into(), 0, 0, 0, 1, 0];
     // Name, type (forwards), first and last frame, cents within a frame, number of rounds (for ever).
     let data: Vec<u8> = header.into_iter().chain([0, 0, start, last, 0, 0]).flat_map(u32::to_le_bytes).collect();
     [b"smpl", &(data.len() as u32).to_le_bytes()[..], &data].concat()
@@ -40,12 +40,12 @@ mod tests {
 
     #[test]
     fn a_chunk_names_the_last_frame_of_the_loop() {
-        let chunk = sampler_chunk(48_000, &Loop { start: 100, end: 300 });
+        let chunk = sampler_chunk(48_000, &Loop { start: 100, end: 300 }, 57);
         let number = |at: usize| u32::from_le_bytes([chunk[at], chunk[at + 1], chunk[at + 2], chunk[at + 3]]);
         assert_eq!((&chunk[..4], number(4), chunk.len()), (&b"smpl"[..], 60, 68));
-        assert_eq!([number(16), number(20), number(36), number(52), number(56)], [20_833, 60, 1, 100, 299]);
+        assert_eq!([number(16), number(20), number(36), number(52), number(56)], [20_833, 57, 1, 100, 299]);
         for nothing in [Loop::whole(0), Loop { start: 5, end: 5 }, Loop::whole(1 << 33)] {
-            assert!(sampler_chunk(48_000, &nothing).is_empty());
+            assert!(sampler_chunk(48_000, &nothing, 57).is_empty());
         }
     }
 }

@@ -78,7 +78,10 @@ impl Target {
         };
         match (asked, named) {
             (Some(asked), Some(named)) if asked != named => {
-                let message = format!("--format {} does not go with this name: expected one of them", asked.ending());
+                let ending = asked.ending();
+                let message = format!(
+                    "--format {ending} does not go with this name: expected a name that ends in .{ending}, or no --format"
+                );
                 Err(Error::value(self.name(), message))
             }
             (None, None) if OTHER_FORMATS.contains(&ending.as_str()) => {

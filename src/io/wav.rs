@@ -39,7 +39,7 @@ impl<W: Write + Seek> WavWriter<W> {
         Self::open(out, name, format, dither, frames, Vec::new())
     }
 
-    /// As [`WavWriter::new`], with a loop for samplers. The length must be known.
+    /// As [`WavWriter::new`], with a loop for samplers, which play the sound as it is on `key`. The length must be known.
     ///
     /// # Errors
     /// As [`WavWriter::new`].
@@ -50,8 +50,9 @@ impl<W: Write + Seek> WavWriter<W> {
         dither: Option<u64>,
         frames: u64,
         looped: &Loop,
+        key: u8,
     ) -> Result<Self> {
-        Self::open(out, name, format, dither, Some(frames), sampler_chunk(format.sample_rate, looped))
+        Self::open(out, name, format, dither, Some(frames), sampler_chunk(format.sample_rate, looped, key))
     }
 
     fn open(

@@ -102,6 +102,11 @@ impl<'a> Job<'a> {
         self.song.frames(self.options.sample_rate.into()).saturating_sub(self.first_frame())
     }
 
+    /// Length of the rendering in frames, as far as it is certain before: of the song alone if the rest depends on the sound.
+    pub fn least_frames(&self) -> u64 {
+        self.known_frames().unwrap_or(self.song_frames())
+    }
+
     /// The frame of the song at which the rendering begins.
     pub(super) fn first_frame(&self) -> u64 {
         song::frames(self.from, self.options.sample_rate.into())

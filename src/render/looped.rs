@@ -17,6 +17,9 @@ struct Looped<'a> {
     rendered: Rendered,
 }
 
+/// Frames of the pieces in which the limiter plays the first round, so that no second copy of the whole is needed.
+const FIRST_ROUND_FRAMES: usize = 4096;
+
 /// As [`to_wav`](super::to_wav), but as a loop of the song's length, with loop points for samplers.
 ///
 /// # Errors
@@ -65,7 +68,9 @@ impl<'a> Looped<'a> {
         })?;
         let [left, right] = &mut sound;
         let mut limiter = Limiter::new(job.options.sample_rate.into());
-        limiter.process(is_limited, &mut left.clone(), &mut right.clone());
+        for (left, right) in left.chunks(FIRST_ROUND_FRAMES).zip(right.chunks(FIRST_ROUND_FRAMES)) {
+            limiter.process(is_limited, &mut left.to_vec(), &mut right.to_vec());
+        }
         let before = limiter.work();
         limiter.process(is_limited, left, right);
         rendered.limiter = limiter.work();

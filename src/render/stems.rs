@@ -15,8 +15,9 @@ use crate::units::gain_from_db;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Below this level, −126 dBFS, the rest of a channel and the shared space are no stems of their own: half of what stems may lack.
-const INAUDIBLE: f32 = 5e-7;
+/// What all stems together may lack of the mix, −120 dBFS. The rest of a channel and the shared space are no stems of their own if they
+/// stay below their shares of it.
+const INAUDIBLE: f32 = 1e-6;
 
 /// Most characters of a stem's name that come from names of sounds.
 const NAME_LENGTH: usize = 40;
@@ -144,7 +145,7 @@ pub fn to_stem_wavs(
     };
     let channels = if delivery.mono { 1 } else { 2 };
     let format = WavFormat { sample_rate: job.options.sample_rate, channels, samples: delivery.samples };
-    let expected = job.known_frames().unwrap_or(job.song_frames());
+    let expected = job.least_frames();
     if let Some(first) = outputs.first() {
         first.check_room(format.file_len(expected)?.saturating_mul(stems.len() as u64))?;
     }
@@ -161,8 +162,8 @@ pub fn to_stem_wavs(
     let rendered = job.render_stems(|block, frames| {
         for ((stem, writer), peak) in stems.iter().zip(&mut writers).zip(&mut peaks) {
             stem.content.read(block, frames, stems, &mut sound);
-            *peak = sound.iter().flatten().fold(*peak, |peak, sample| peak.max(sample.abs()));
             let (left, right) = mix.apply(&sound[0], &sound[1]);
+            *peak = left.iter().chain(right).fold(*peak, |peak, sample| peak.max(sample.abs()));
             writer.write(left, right)?;
         }
         done += frames as u64;
@@ -170,10 +171,9 @@ pub fn to_stem_wavs(
     })?;
     let clipped = writers.iter().map(WavWriter::clipped).sum();
     writers.into_iter().try_for_each(WavWriter::finish)?;
-    let is_wanted = |(stem, peak): (&Stem, &f32)| match stem.content {
-        Content::Channel(_) | Content::Pads(..) => true,
-        Content::Rest(_) | Content::Space => *peak > INAUDIBLE,
-    };
+    let is_optional = |stem: &Stem| matches!(stem.content, Content::Rest(_) | Content::Space);
+    let share = INAUDIBLE / stems.iter().filter(|stem| is_optional(stem)).count().max(1) as f32;
+    let is_wanted = |(stem, peak): (&Stem, &f32)| !is_optional(stem) || *peak > share;
     Ok(StemsReport { rendered, is_wanted: stems.iter().zip(&peaks).map(is_wanted).collect(), clipped })
 }
 

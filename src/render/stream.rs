@@ -2,7 +2,7 @@
 
 use super::job::{Job, Rendered};
 use super::labels::Labels;
-use crate::engine::{Ensemble, Event, EventKind, Owners, Stems};
+use crate::engine::{Ensemble, Event, Stems};
 use crate::error::Result;
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
@@ -148,25 +148,18 @@ impl<'a> Stream<'a> {
         Ok(stream)
     }
 
-    /// Advances to the first frame: obeys all messages at their frames, but plays no notes. So controllers, programs and oscillators
+    /// Advances to the first frame: obeys all messages at their frames, but leaves notes out. So controllers, programs and oscillators
     /// are there as they would be if the notes had been played.
     fn pass_over(&mut self, block: usize) {
-        let (mut owners, mut left, mut right) = (Owners::default(), vec![0.0; block], vec![0.0; block]);
+        let [mut left, mut right] = [vec![0.0; block], vec![0.0; block]];
+        self.ensemble.leave_out_notes(true);
         while self.song.frame() < self.first_frame {
             let frames = (self.first_frame - self.song.frame()).min(block as u64) as usize;
             self.events.clear();
             self.song.advance(frames, &mut self.events);
-            let ensemble = &mut self.ensemble;
-            self.events.retain(|event| {
-                owners.hear(event);
-                let is_note = matches!(event.kind, EventKind::NoteOn { .. } | EventKind::Strike { .. });
-                if is_note {
-                    ensemble.leave_out_note(owners.of(event.channel));
-                }
-                !is_note
-            });
-            ensemble.process(&self.events, &mut left[..frames], &mut right[..frames]);
+            self.ensemble.process(&self.events, &mut left[..frames], &mut right[..frames]);
         }
+        self.ensemble.leave_out_notes(false);
     }
 
     /// Fills both slices, which have the same length, and returns the number of frames. It is smaller than their length

@@ -4,7 +4,7 @@ use super::job::{Job, Rendered};
 use super::labels::{Labels, NoteLabel};
 use super::meter::{Levels, Meter};
 use crate::error::{Error, Result};
-use crate::io::{Inputs, Loop, Output, SampleFormat, Target, WavFormat, WavWriter};
+use crate::io::{Inputs, Loop, MIDDLE_C, Output, SampleFormat, Target, WavFormat, WavWriter};
 use crate::units::{db_from_gain, gain_from_db, mono_from_stereo};
 use std::path::Path;
 use std::time::Instant;
@@ -211,7 +211,9 @@ pub(super) fn write(
     let announced = length.filter(|_| !output.is_seekable());
     let mut writer = match length.filter(|_| source.is_loop()) {
         None => WavWriter::new(output.stream(), &name, format, dither, announced)?,
-        Some(frames) => WavWriter::looped(output.stream(), &name, format, dither, frames, &Loop::whole(frames))?,
+        Some(frames) => {
+            WavWriter::looped(output.stream(), &name, format, dither, frames, &Loop::whole(frames), MIDDLE_C)?
+        }
     };
     let rendered = source.play(labels, &mut |left, right| {
         let (left, right) = mix.apply(left, right);

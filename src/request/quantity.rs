@@ -190,7 +190,7 @@ pub fn file_format(text: &str) -> Result<FileFormat, String> {
 pub fn song_time(text: &str) -> Result<SongTime, String> {
     let trimmed = text.trim();
     let Some((_, place)) = trimmed.split_at_checked(3).filter(|(word, _)| word.eq_ignore_ascii_case("bar")) else {
-        return seconds(text).map(SongTime::Seconds);
+        return seconds(text).map(SongTime::Seconds).map_err(|message| format!("{message}, or a bar (bar 9)"));
     };
     let wrong = || format!("‘{text}’ is no bar: expected bar 9, or bar 9.3 for its third beat");
     let (bar, beat) = place.trim().split_once('.').unwrap_or((place.trim(), "1"));
@@ -324,7 +324,7 @@ mod tests {
             (channel("x=Kick").err(), "channel ‘x’ is not a whole number: expected 1 to 16"),
             (song_time("bar 0").err(), "‘bar 0’ is no bar: expected bar 9, or bar 9.3 for its third beat"),
             (song_time("bar").err(), "‘bar’ is no bar: expected bar 9, or bar 9.3 for its third beat"),
-            (song_time("9b").err(), "‘9b’ is not a number: expected 0 to 86400 s"),
+            (song_time("9b").err(), "‘9b’ is not a number: expected 0 to 86400 s, or a bar (bar 9)"),
             (setting("deacy=1").err(), "there is no parameter ‘deacy’; the nearest is ‘decay’"),
             (setting("gain=99").err(), "gain: 99 is out of range: expected from -60 dB to 12 dB"),
         ]

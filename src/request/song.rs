@@ -2,6 +2,8 @@
 
 use crate::engine::EventKind;
 use crate::engine::banks::DRUM_CHANNEL;
+use crate::engine::midi::controller::PORTAMENTO_CONTROL;
+use crate::engine::midi::seven_bits;
 use crate::error::{Error, Result};
 use crate::io::{Inputs, MidiFile, Reading, Song, SongTime};
 use crate::text::counted;
@@ -94,14 +96,25 @@ impl SongRequest {
     fn transpose(&self, song: &mut Song, warn: &mut dyn FnMut(&str)) {
         let mut beyond = 0;
         song.events.retain_mut(|event| {
-            let (EventKind::NoteOn { key, .. } | EventKind::NoteOff { key, .. } | EventKind::PolyPressure { key, .. }) =
-                &mut event.kind
-            else {
-                return true;
-            };
             let by = if event.channel == DRUM_CHANNEL { 0 } else { self.transpose };
-            let moved = i32::from(*key).saturating_add(by);
-            let Some(there) = u8::try_from(moved).ok().filter(|key| *key < 128) else {
+            let moved = |key: u8| u8::try_from(i32::from(key).saturating_add(by)).ok().filter(|key| *key < 128);
+            let key = match &mut event.kind {
+                EventKind::NoteOn { key, .. }
+                | EventKind::NoteOff { key, .. }
+                | EventKind::PolyPressure { key, .. } => key,
+                EventKind::Tune { key, pitch, .. } => {
+                    *pitch += by as f32;
+                    key
+                }
+                // The key to glide from.
+                EventKind::Control { controller: PORTAMENTO_CONTROL, value } => {
+                    let there = moved(seven_bits(*value));
+                    *value = there.map_or(*value, |key| f32::from(key) / 127.0);
+                    return there.is_some();
+                }
+                _ => return true,
+            };
+            let Some(there) = moved(*key) else {
                 beyond += usize::from(matches!(event.kind, EventKind::NoteOn { .. }));
                 return false;
             };
@@ -136,5 +149,32 @@ impl SongRequest {
             warn(&format!("{origin}: {unheeded}"));
         }
         Ok(file)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::SongEvent;
+
+    #[test]
+    fn tunings_and_keys_to_glide_from_move_with_the_notes() {
+        let glide = |key: u8| EventKind::Control { controller: PORTAMENTO_CONTROL, value: f32::from(key) / 127.0 };
+        let tune = |key, pitch| EventKind::Tune { key, pitch, sounding: false };
+        let volume = EventKind::Control { controller: 7, value: 0.5 };
+        for (channel, kind, moved) in [
+            (0, tune(60, 60.5), Some(tune(67, 67.5))),
+            (0, tune(121, 121.5), None),
+            (0, glide(48), Some(glide(55))),
+            (0, glide(121), None),
+            (0, volume, Some(volume)),
+            (DRUM_CHANNEL, glide(48), Some(glide(48))),
+        ] {
+            let event = |kind| SongEvent { seconds: 0.0, channel, kind };
+            let mut song = Song { events: vec![event(kind)], seconds: 1.0 };
+            let request = SongRequest { transpose: 7, ..SongRequest::default() };
+            request.transpose(&mut song, &mut |message| panic!("{message}"));
+            assert_eq!(song.events, Vec::from_iter(moved.map(event)));
+        }
     }
 }

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::preset::Playable;
 use serde_json::{Value, json};
 use std::fs::{self, File, OpenOptions};
-use std::io::Write;
+use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
@@ -26,6 +26,8 @@ pub(super) struct List {
     name: String,
     known: Vec<Line>,
     file: Mutex<File>,
+    /// The first line, until it is written.
+    settings: Option<String>,
 }
 
 impl Line {
@@ -42,7 +44,7 @@ impl Line {
 }
 
 impl List {
-    /// Opens the list of a folder. Its first line has the settings.
+    /// Opens the list of a folder.
     pub(super) fn open(sampling: &Sampling, playable: &Playable) -> Result<Self> {
         let path = sampling.folder.join("samples.jsonl");
         let name = path.display().to_string();
@@ -66,13 +68,17 @@ impl List {
             return Err(Error::value(&name, message));
         }
         let known = lines.filter_map(Line::parse).collect();
-        let file = OpenOptions::new().create(true).append(true).open(&path).map_err(failed)?;
-        file.set_len(whole as u64).map_err(failed)?;
-        let list = Self { name, known, file: Mutex::new(file) };
-        if first.is_none() {
-            list.write(&settings)?;
-        }
-        Ok(list)
+        // Not in the mode that appends: Windows does not let such a file be shortened.
+        let mut options = OpenOptions::new();
+        let mut file = options.read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;
+        file.set_len(whole as u64).and_then(|()| file.seek(SeekFrom::End(0))).map_err(failed)?;
+        let settings = Some(settings).filter(|_| first.is_none());
+        Ok(Self { name, known, file: Mutex::new(file), settings })
+    }
+
+    /// Writes the settings if the list is new. From then on, the folder has an instrument that can be resumed.
+    pub(super) fn begin(&self) -> Result<()> {
+        self.settings.iter().try_for_each(|settings| self.write(settings))
     }
 
     /// The line of a file, if it was finished before and is there.
@@ -97,9 +103,12 @@ impl List {
 fn settings(sampling: &Sampling, playable: &Playable) -> String {
     let Sampling { keys, every, velocities, strikes, length, rate, bits, format, seed, .. } = sampling;
     let keys = keys.as_ref().map(|keys| [*keys.start(), *keys.end()]);
+    // A kit's own text has only the names of its presets.
+    let presets: Vec<String> = playable.clone().presets_mut().iter().map(|preset| preset.to_toml()).collect();
     let settings = json!({
         "version": env!("CARGO_PKG_VERSION"),
         "sound": playable.to_toml(),
+        "presets": presets,
         "keys": keys,
         "every": every,
         "velocities": velocities,

@@ -5,7 +5,7 @@ use super::plan::{self, Plan};
 use super::settings::Sampling;
 use super::{instrument, take};
 use crate::error::{Error, Result};
-use crate::io::{Inputs, Output, Target};
+use crate::io::{Inputs, Output, Target, WavFormat};
 use crate::preset::Playable;
 use crate::render::on_threads;
 use crate::sound::Kit;
@@ -44,10 +44,24 @@ impl Sampling {
         self.format
             .check(self.bits, self.rate)
             .map_err(|(option, message)| Error::value(format!("--{option}"), message))?;
+        let format = WavFormat { sample_rate: self.rate, channels: 2, samples: self.bits };
+        let frames = self.length * f64::from(self.rate);
+        if frames < 1.0 {
+            return Err(Error::value("--length", "no frame is as short: expected a longer time"));
+        }
+        self.format.check_length(&format, frames.ceil() as u64)?;
         let plan = Plan::new(self, playable, kit)?;
         let samples = self.folder.join("samples");
         fs::create_dir_all(&samples).map_err(|source| Error::io(samples.display().to_string(), source))?;
         let list = List::open(self, playable)?;
+        // Opened before the work, which would be lost if a file were in the way.
+        let name = Some(slug(playable.name())).filter(|name| !name.is_empty()).unwrap_or_else(|| "sound".to_owned());
+        let open = |ending: &str| {
+            let path = self.folder.join(format!("{name}.{ending}"));
+            Output::create(&Target::Path(path), self.resume, inputs)
+        };
+        let outputs = [open("sfz")?, open("dspreset")?];
+        list.begin()?;
         let done = AtomicUsize::new(0);
         let of = plan.takes.len();
         let make = |take: &plan::Take| -> Result<(Line, bool)> {
@@ -64,13 +78,8 @@ impl Sampling {
         };
         let made = on_threads(self.at_once, || plan.takes.par_iter().map(make).collect::<Result<Vec<_>>>())??;
         let lines: Vec<Line> = made.iter().map(|(line, _)| line.clone()).collect();
-        let name = slug(playable.name());
-        for (ending, text) in [
-            ("sfz", instrument::sfz(&plan, &lines, playable.name())),
-            ("dspreset", instrument::decent_sampler(&plan, &lines)),
-        ] {
-            let path = self.folder.join(format!("{name}.{ending}"));
-            let mut output = Output::create(&Target::Path(path), self.resume, inputs)?;
+        let texts = [instrument::sfz(&plan, &lines, playable.name()), instrument::decent_sampler(&plan, &lines)];
+        for (mut output, text) in outputs.into_iter().zip(texts) {
             output.stream().write_all(text.as_bytes()).map_err(|source| Error::io(output.name(), source))?;
             output.commit()?;
         }

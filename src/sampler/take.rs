@@ -22,7 +22,8 @@ pub(super) fn make(sampling: &Sampling, plan: &Plan, kit: &Arc<Kit>, take: &Take
     let mut sound = strike(sampling, kit, zone.key, velocity, take.strike, [sampling.length, 0.0])?;
     let whole = sound[0].len();
     let is_audible = |sample: &f32| sample.abs() >= AUDIBLE;
-    let end = sound.iter().filter_map(|side| side.iter().rposition(is_audible)).max().map_or(0, |last| last + 1);
+    // A silent take is a frame long, since samplers refuse files without one.
+    let end = sound.iter().filter_map(|side| side.iter().rposition(is_audible)).max().map_or(1, |last| last + 1);
     sound.iter_mut().for_each(|side| side.truncate(end));
     let looped = if end == whole && !zone.rings_on { steady::find(&sound, sampling.rate) } else { None };
     if end == whole && looped.is_none() {
@@ -40,7 +41,7 @@ pub(super) fn make(sampling: &Sampling, plan: &Plan, kit: &Arc<Kit>, take: &Take
         let (name, frames) = (output.name().to_owned(), end as u64);
         let mut writer = match &looped {
             None => WavWriter::new(output.stream(), &name, format, None, Some(frames))?,
-            Some(looped) => WavWriter::looped(output.stream(), &name, format, None, frames, looped)?,
+            Some(looped) => WavWriter::looped(output.stream(), &name, format, None, frames, looped, zone.key)?,
         };
         writer.write(&sound[0], &sound[1])?;
         writer.finish()

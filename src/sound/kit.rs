@@ -42,6 +42,17 @@ impl Pad {
         Self { name: String::new(), sound, pitch: None, gain_db: 0.0, pan: 0.0, choke: None }
     }
 
+    /// The key whose pitch the pad has when `key` plays it, and semitones above.
+    fn tuned_key(&self, key: u8) -> (u8, f32) {
+        match self.pitch {
+            None => (key, 0.0),
+            Some(pitch) => {
+                let nearest = libm::round(pitch).clamp(0.0, 127.0);
+                (nearest as u8, (pitch - nearest) as f32)
+            }
+        }
+    }
+
     /// Clamps values out of range. NaN becomes the neutral value: no gain, centre, the key's own pitch.
     fn confine(&mut self) {
         let within = |value: f32, min: f32, max: f32| if value.is_nan() { 0.0 } else { value.clamp(min, max) };
@@ -166,14 +177,16 @@ impl Kit {
     pub(crate) fn tuned_pad(&self, key: u8, tuning: &Tuning) -> Option<(&Pad, Pitch, f32)> {
         let pad = self.pad(key)?;
         let tuning = self.sounds.get(pad.sound)?.tuning().unwrap_or(tuning);
-        let (key, offset) = match pad.pitch {
-            None => (key, 0.0),
-            Some(pitch) => {
-                let nearest = libm::round(pitch).clamp(0.0, 127.0);
-                (nearest as u8, (pitch - nearest) as f32)
-            }
-        };
+        let (key, offset) = pad.tuned_key(key);
         Some((pad, tuning.pitch(key)?, offset))
+    }
+
+    /// Whether a key has the pitch of the key `tuned` in the tuning of its channel. Real-time safe.
+    pub(crate) fn follows(&self, key: u8, tuned: u8) -> bool {
+        self.pad(key).is_some_and(|pad| {
+            let is_fixed = self.sounds.get(pad.sound).is_none_or(|sound| sound.tuning().is_some());
+            !is_fixed && pad.tuned_key(key).0 == tuned
+        })
     }
 
     /// Whether the kit has only one sound. Real-time safe.

@@ -237,5 +237,5 @@ fn the_presets_like_a_recording_begin_with_the_one_that_made_it() {
         .concat(),
     );
     sandbox.fails("presets like silence.wav", 1, "silence.wav: it is silent");
-    sandbox.fails("presets like strike.wav --search nothing-is-called-so", 1, "none is so");
+    sandbox.fails("presets like strike.wav --search nothing-is-called-so", 1, "no preset fits these options");
 }

@@ -122,16 +122,17 @@ fn a_steady_sound_is_looped_and_sounds_on_like_its_source() {
     let sandbox = Sandbox::new();
     // A mass that is bowed: nothing else about it changes.
     let sound = "--set bow_level=0 --set mallet_level=-60 --set noise_level=-60 --set release=0.5";
-    sandbox.succeeds(&format!("sample init {sound} --keys 60-60 --velocities 1 --strikes 2 --length 3 -o bowed"));
+    sandbox.succeeds(&format!("sample init {sound} --keys 57-57 --velocities 1 --strikes 2 --length 3 -o bowed"));
     let text = String::from_utf8(sandbox.read("bowed/init.sfz")).unwrap();
     let [region] = &regions(&text)[..] else { panic!("its strikes are all alike: {text}") };
     assert_eq!(region["loop_mode"], "loop_continuous");
     let release = number(region, "ampeg_release");
     assert!((release - 0.5).abs() < 0.05, "{release}");
-    let played = play(&sandbox, "bowed", "init.sfz", [60.0, 127.0, 1.0], 6 * 48_000);
-    compare(&sandbox, &format!("--preset init {sound} --note 60 --velocity 127 --length 6"), &played);
+    let played = play(&sandbox, "bowed", "init.sfz", [57.0, 127.0, 1.0], 6 * 48_000);
+    compare(&sandbox, &format!("--preset init {sound} --note 57 --velocity 127 --length 6"), &played);
     let wav = sandbox.read(&format!("bowed/{}", region["sample"]));
-    assert!(wav.windows(4).any(|window| window == b"smpl"));
+    let chunk = wav.windows(4).position(|window| window == b"smpl").unwrap();
+    assert_eq!(wav[chunk + 20..chunk + 24], 57_u32.to_le_bytes(), "the key of the sample");
 }
 
 #[test]
@@ -183,6 +184,52 @@ fn an_instrument_that_was_broken_off_goes_on() {
         let same = sandbox.read(&format!("part/samples/{name}")) == sandbox.read(&format!("whole/samples/{name}"));
         assert!(same, "{name}");
     }
+    sandbox.fails("sample Kick -o no --length 0", 1, "--length: no frame is as short");
+    sandbox.fails("sample Kick -o no --length 86400 --format flac", 1, "--format: the sound is too long for FLAC");
     sandbox.fails("sample Kick -o no --keys 40-30", 2, "‘40-30’ is no range of keys");
     sandbox.fails("sample Kick -o no --bits 32f --format flac", 1, "--bits: FLAC has no floats");
+}
+
+#[test]
+fn a_kit_is_resumed_only_with_the_same_presets() {
+    let sandbox = Sandbox::new();
+    let base = "sample --keys 36-36 --velocities 1 --strikes 1 --length 0.1";
+    let sample = |args: &str| {
+        let mut sample = sandbox.sprung(&format!("{base} {args}"));
+        sample.arg("Acoustic Kit");
+        sample
+    };
+    sample("-o kit").assert().success();
+    sample("-o kit --resume").assert().success();
+    let output = sample("-o kit --resume --set decay=0.1").assert().code(1).get_output().clone();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("it has other settings"), "{told}");
+}
+
+#[test]
+fn a_file_in_the_way_is_found_before_the_work() {
+    let sandbox = Sandbox::new();
+    fs::create_dir(sandbox.path("kick")).unwrap();
+    sandbox.write("kick/kick.dspreset", "mine");
+    let base = "sample Kick --keys 36-36 --velocities 2 --strikes 1 --length 0.1 -o kick";
+    sandbox.fails(base, 1, "kick.dspreset");
+    assert_eq!(fs::read_dir(sandbox.path("kick/samples")).unwrap().count(), 0);
+    fs::remove_file(sandbox.path("kick/kick.dspreset")).unwrap();
+    sandbox.succeeds(base);
+}
+
+#[test]
+fn an_instrument_without_a_name_of_letters_has_one() {
+    let sandbox = Sandbox::new();
+    let preset = String::from_utf8(sandbox.succeeds("presets show init")).unwrap();
+    let named = preset.lines().map(|line| if line.starts_with("name = ") { "name = \"鐘\"" } else { line });
+    sandbox.write("bell.toml", named.collect::<Vec<_>>().join("\n"));
+    // Nothing of it sounds: its samples have a frame all the same.
+    sandbox.succeeds(
+        "sample bell.toml --set mallet_level=-60 --set noise_level=-60 --keys 60-60 --velocities 1 --strikes 1 --length 0.1 --format flac -o bell",
+    );
+    let text = String::from_utf8(sandbox.read("bell/sound.sfz")).unwrap();
+    let [region] = &regions(&text)[..] else { panic!("{text}") };
+    let file = fs::File::open(sandbox.path(&format!("bell/{}", region["sample"]))).unwrap();
+    assert_eq!(sprung::io::sound_file::read(file, "sample").unwrap().channels[0], [0.0]);
 }

@@ -135,6 +135,19 @@ fn stems_of_flac_have_the_same_samples() {
 }
 
 #[test]
+fn what_is_inaudible_after_the_gain_is_no_stem() {
+    let sandbox = Sandbox::new();
+    write_song(&sandbox);
+    sandbox.succeeds("render song.mid --bits 32f --stems stems");
+    assert!(names(&sandbox, "stems").contains(&"space.wav".to_owned()));
+    sandbox.succeeds("render song.mid --bits 32f --gain-db -120 --stems soft");
+    assert!(!names(&sandbox, "soft").contains(&"space.wav".to_owned()));
+    // With --force, no file of an earlier run stays as it was.
+    sandbox.succeeds("render song.mid --bits 32f --gain-db -120 --stems stems --force");
+    assert!(names(&sandbox, "stems").iter().all(|name| sandbox.wav(&format!("stems/{name}")).peak() < 1e-5));
+}
+
+#[test]
 fn no_stem_is_left_by_an_error() {
     let sandbox = Sandbox::new();
     write_song(&sandbox);

@@ -4,6 +4,8 @@ use crate::events::{event, off, on};
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::{Choice, Param, PlayMode};
 use sprung::patch::Patch;
+use sprung::sound::{Kit, Pad, Sound, Tuning};
+use std::sync::Arc;
 
 const RATE: usize = 48_000;
 
@@ -94,6 +96,12 @@ fn modes_are_those_that_the_controllers_choose() {
         assert_eq!(voices(&patch(), first), count, "{first:?}");
     }
     assert_eq!(voices(&mono, &[control(0, 127, 0)]), 3);
+    let poly = Event { channel: 1, ..control(0, 127, 0) };
+    assert_eq!(
+        voices(&patch(), &[control(0, 126, 1), poly, control(0, 126, 1)]),
+        1,
+        "the last message of all channels"
+    );
 }
 
 /// With the footswitch down, a key that is pressed while another is down moves the pitch and does not strike.
@@ -123,5 +131,28 @@ fn a_key_that_is_tuned_anew_sounds_so_now_or_from_the_next_note_on() {
         first.sort_by(f32::total_cmp);
         assert_eq!(first, if sounding { [64.0, now] } else { [now, 64.0] });
         assert_eq!(pitches(&after(&patch(), &events, 9664))[0], 67.25);
+    }
+}
+
+#[test]
+fn keys_with_a_tuning_of_their_own_stay_and_pads_follow_the_key_whose_pitch_they_have() {
+    let tune = |key, pitch| event(1000, EventKind::Tune { key, pitch, sounding: true });
+    let sounding = |kit: &Arc<Kit>, key: u8, events: &[Event]| {
+        let mut synth = Synth::new(RATE as f64, 0);
+        synth.set_kit(kit);
+        let events = [&[on(0, key)], events].concat();
+        let (mut left, mut right) = (vec![0.0; 4800], vec![0.0; 4800]);
+        synth.process(&events, &mut left, &mut right);
+        pitches(&synth)[0]
+    };
+    let scale = Tuning::from_scala("\n2\n600.\n2/1\n", None).unwrap();
+    let own = Kit::single("own".to_owned(), Arc::new(Sound::new(patch()).tuned(Some(scale))));
+    assert_eq!(sounding(&own, 60, &[]), sounding(&own, 60, &[tune(60, 67.25)]));
+    let pad = |pitch| Some(Pad { pitch, ..Pad::of(0) });
+    let mut pads = vec![None; 128];
+    (pads[36], pads[38]) = (pad(Some(60.25)), pad(None));
+    let kit = Arc::new(Kit::new("kit".to_owned(), vec![Arc::new(Sound::new(patch())); 2], pads));
+    for (key, tuned, pitch) in [(36, 36, 60.25), (36, 60, 67.5), (38, 38, 67.25), (38, 60, 38.0)] {
+        assert_eq!(sounding(&kit, key, &[tune(tuned, 67.25)]), pitch, "key {key}, tuned {tuned}");
     }
 }

@@ -49,7 +49,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
     });
     let presets: Vec<(&str, &Preset)> = presets.collect();
     if presets.is_empty() {
-        return Err(Error::value("presets", "none is so: expected another --family, --tag or --search"));
+        return Err(Error::value(
+            "presets",
+            "no preset fits these options: expected another --family, --tag or --search",
+        ));
     }
     interrupt::catch(true)?;
     let (bar, done) = (Mutex::new(Bar::new()), AtomicUsize::new(0));

@@ -4,8 +4,9 @@ use crate::song::SongArgs;
 use crate::sound::SoundArgs;
 use crate::{completion, quantity};
 use clap::ArgGroup;
-use sprung::io::{FileFormat, SampleFormat, SongTime};
-use sprung::render::{BLOCKS, Level, THREADS, Tail};
+use sprung::Result;
+use sprung::io::{FileFormat, SampleFormat, SongTime, WavFormat};
+use sprung::render::{BLOCKS, Job, Level, THREADS, Tail};
 use sprung::request::{Request, SongRequest};
 use std::path::PathBuf;
 
@@ -114,5 +115,12 @@ impl Args {
             gain_db: self.gain_db,
             block: self.block as usize,
         }
+    }
+
+    /// Checks that a rendering fits into a file format, as far as its length is known.
+    pub(super) fn check_length(&self, format: FileFormat, job: &Job) -> Result<()> {
+        let channels = if self.mono { 1 } else { 2 };
+        let wav = WavFormat { sample_rate: self.rate, channels, samples: self.bits };
+        format.check_length(&wav, if self.is_loop { job.song_frames() } else { job.least_frames() })
     }
 }

@@ -21,6 +21,7 @@ pub(super) fn run(args: &Args, request: &Request, target: &Target) -> Result<()>
     let mut inputs = Inputs::default();
     let prepared = request.prepare(&mut inputs, &mut warn)?;
     let (job, delivery) = (prepared.job(), &prepared.delivery);
+    args.check_length(format, &job)?;
     if args.json {
         inputs.check_stdout()?;
     }

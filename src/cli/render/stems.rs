@@ -1,4 +1,4 @@
-//! The stems of a song: a file for each, of the same length. They appear together when all are complete.
+//! The stems of a song: a file for each, of the same length. None gets its name before all are complete.
 
 use super::args::Args;
 use crate::interrupt;
@@ -18,6 +18,7 @@ pub(super) fn run(args: &Args, request: &Request, folder: &Path) -> Result<()> {
     let mut inputs = Inputs::default();
     let prepared = request.prepare(&mut inputs, &mut warn)?;
     let job = prepared.job();
+    args.check_length(format, &job)?;
     let stems = stems_of(&job);
     let is_new = !folder.exists();
     fs::create_dir_all(folder).map_err(|source| Error::io(folder.display().to_string(), source))?;
@@ -40,13 +41,17 @@ pub(super) fn run(args: &Args, request: &Request, folder: &Path) -> Result<()> {
         };
         let report = on_threads(args.threads, || to_stem_wavs(&job, &prepared.delivery, &stems, into, progress))??;
         drop(bar);
-        for ((wav, output), is_wanted) in wavs.iter_mut().zip(&mut outputs).zip(&report.is_wanted) {
+        // A file of an earlier run that is in the place of an inaudible stem is replaced too: it would belong to another mix.
+        let exists = |output: &Output| Path::new(output.name()).exists();
+        let is_wanted: Vec<bool> =
+            outputs.iter().zip(&report.is_wanted).map(|(output, wanted)| *wanted || exists(output)).collect();
+        for ((wav, output), is_wanted) in wavs.iter_mut().zip(&mut outputs).zip(&is_wanted) {
             if *is_wanted {
                 let name = output.name().to_owned();
                 flac::encode(wav.stream(), output.stream(), &name)?;
             }
         }
-        let wanted = outputs.into_iter().zip(&report.is_wanted).filter(|(_, is_wanted)| **is_wanted);
+        let wanted = outputs.into_iter().zip(&is_wanted).filter(|(_, is_wanted)| **is_wanted);
         wanted.map(|(output, _)| output.commit()).collect::<Result<Vec<()>>>().map(|written| (written.len(), report))
     };
     let (written, report) = write().inspect_err(|_| {

@@ -193,9 +193,9 @@ impl Ensemble {
         self.limiter.is_wanted()
     }
 
-    /// Counts a note that is left out on the channel whose instrument would play it, so that later notes keep their random numbers.
-    pub(crate) fn leave_out_note(&mut self, owner: u8) {
-        self.parts[usize::from(nearest_channel(owner))].synth.leave_out_note();
+    /// Whether notes are left out from now on. Those after them are the same as if they had sounded.
+    pub(crate) fn leave_out_notes(&mut self, leaves_out: bool) {
+        self.parts.iter_mut().for_each(|part| part.synth.leave_out_notes(leaves_out));
     }
 
     /// Amplitude ratio at which the channels are mixed, before the limiter.

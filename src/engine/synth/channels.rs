@@ -89,8 +89,10 @@ impl Channels {
             }
         }
         let sender = *self.of(channel);
+        let is_mode = matches!(number, controller::MONO | controller::POLY);
+        let may_change = is_mode || matches!(number, controller::LEGATO | controller::RESET) && sender.mode() != mode;
         // Members of a zone have one note each, and no mode of their own.
-        if sender.mode() != mode && self.master_of(channel).is_none() {
+        if may_change && self.master_of(channel).is_none() {
             self.mode = sender.mode();
         }
         self.gains_moving = sender.slope_frames();

@@ -87,7 +87,10 @@ impl Synth {
     /// Starts a note. The pad, the sound and the soft pedal complete it first.
     fn note_on(&mut self, mut note: Note) {
         let Some(instrument) = self.instruments.start(&mut note, self.clock) else {
-            return self.manager.turn_away(note);
+            if !self.leaves_out_notes {
+                self.manager.turn_away(note);
+            }
+            return;
         };
         note.soft = self.channels.is_soft(note.channel);
         if instrument.has_routes() {
@@ -99,6 +102,10 @@ impl Synth {
                 make_room(std::slice::from_mut(&mut self.manager), |manager| manager, capacity, need);
             }
         }
+        if self.leaves_out_notes {
+            instrument.last_pitch = Some(instrument.pitch(&note));
+            return;
+        }
         if self.manager.note_on(instrument, note) {
             instrument.last_pitch = Some(instrument.pitch(&note));
         }
@@ -108,11 +115,13 @@ impl Synth {
         }
     }
 
-    /// Gives a key another pitch, in semitones on the MIDI scale, and moves its sounding notes there if `sounding` says so.
+    /// Gives a key another pitch, in semitones on the MIDI scale, and moves the sounding notes that have its pitch there if `sounding`
+    /// says so.
     fn tune(&mut self, key: u8, pitch: f32, sounding: bool) {
         let pitch = Pitch::Semitones(pitch.into());
         self.instruments.tune(key, pitch);
-        for (note, voice) in self.manager.active().filter(|(note, _)| sounding && note.key == key) {
+        let kit = self.instruments.kit();
+        for (note, voice) in self.manager.active().filter(|(note, _)| sounding && kit.follows(note.key, key)) {
             if let Some(instrument) = self.instruments.of_note(note) {
                 let by = instrument.pitch(&Note { pitch, ..*note }) - instrument.pitch(note);
                 let brightness = self.channels.brightness(note.channel);

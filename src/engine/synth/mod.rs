@@ -61,6 +61,8 @@ pub struct Synth {
     limiter: Limiter,
     /// Number of notes started so far.
     note_serial: u64,
+    /// Whether notes are counted and do not sound.
+    leaves_out_notes: bool,
     /// Frames since the start. Control ticks are at the multiples of [`CONTROL_FRAMES`](crate::dsp::CONTROL_FRAMES).
     clock: u64,
     /// An event was handled since the last `control_tick()`: run it before rendering.
@@ -95,6 +97,7 @@ impl Synth {
             space: Space::new(sample_rate),
             limiter: Limiter::new(sample_rate),
             note_serial: 0,
+            leaves_out_notes: false,
             clock: 0,
             needs_control: false,
             pads: None,
@@ -257,9 +260,10 @@ impl Synth {
         }
     }
 
-    /// Counts a note that is left out, so that those after it keep their random numbers.
-    pub(super) fn leave_out_note(&mut self) {
-        self.note_serial += 1;
+    /// Whether notes are left out from now on. They do not sound, but those after them are the same as if they had: they keep their
+    /// random numbers, and glide from the pitch before.
+    pub(super) fn leave_out_notes(&mut self, leaves_out: bool) {
+        self.leaves_out_notes = leaves_out;
     }
 
     /// The most that a note of any sound of the kit takes from the pool.

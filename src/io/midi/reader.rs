@@ -3,7 +3,7 @@
 use super::container::Track;
 use super::fault::{Fault, Found, MOST_REPAIRS};
 use super::limits::MAX_EVENTS;
-use super::system_exclusive::system_exclusive;
+use super::system_exclusive::DrumParts;
 use super::tuning_standard;
 use super::unheeded::Unheeded;
 use crate::engine::EventKind;
@@ -27,6 +27,7 @@ pub(super) struct TrackReader {
     pub(super) tunings: Vec<(u64, tuning_standard::Message)>,
     pub(super) unheeded: Unheeded,
     pub(super) bars: Bars,
+    drum_parts: DrumParts,
     lenient: bool,
 }
 
@@ -62,7 +63,8 @@ impl TrackReader {
     pub(super) fn new(timing: Timing, lenient: bool) -> Self {
         let (events, tempos, repairs) = (Vec::new(), Vec::new(), Vec::new());
         let (tunings, unheeded) = (Vec::new(), Unheeded::default());
-        Self { events, tempos, last_tick: 0, repairs, tunings, unheeded, bars: Bars::new(timing), lenient }
+        let (bars, drum_parts) = (Bars::new(timing), DrumParts::default());
+        Self { events, tempos, last_tick: 0, repairs, tunings, unheeded, bars, drum_parts, lenient }
     }
 
     /// Reads the track with this number. Errors name the position.
@@ -145,7 +147,7 @@ impl TrackReader {
                 self.events.extend(translate(channel, message).map(|(channel, kind)| (tick, channel, kind)));
             }
             TrackEventKind::SysEx(message) => {
-                let events = system_exclusive(message);
+                let events = self.drum_parts.system_exclusive(message);
                 if let Some(tuning) = tuning_standard::Message::read(message) {
                     self.tunings.push((tick, tuning));
                 } else if events.is_empty() {

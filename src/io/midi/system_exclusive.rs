@@ -21,27 +21,58 @@ const GS_MASTER_VOLUME: [u8; 3] = [0x40, 0x00, 0x04];
 const GS_SET: [u8; 2] = [0x42, 0x12];
 const GS_RESET: [u8; 3] = [0x40, 0x00, 0x7F];
 
-/// The events that a message is converted to, with their channels: volumes of [`ALL_CHANNELS`], bank selects, reverb sends and program
-/// changes.
-/// `message` is the message after its byte F0. All other messages give no events.
-pub(super) fn system_exclusive(message: &[u8]) -> Vec<(u8, EventKind)> {
-    match message {
-        [universal, _, id, 0x01..=0x03, ..] if [*universal, *id] == GENERAL_MIDI => reset(),
-        [0x43, _, rest @ ..] if rest.starts_with(&XG_RESET) => reset(),
-        [0x7F, _, first, second, fine, coarse, 0xF7] if [*first, *second] == MASTER_VOLUME => {
-            master_volume((f32::from(*coarse) * 128.0 + f32::from(*fine)) / 16_383.0)
-        }
-        [0x43, _, 0x4C, 0x08, part @ 0..=15, 0x07, mode, 0xF7] => set_drums(*part, *mode > 0),
-        [0x43, _, rest @ .., volume, 0xF7] if *rest == XG_MASTER_VOLUME => master_volume(f32::from(*volume) / 127.0),
-        [0x41, _, model, set, rest @ ..] if [*model, *set] == GS_SET => match rest {
-            _ if rest.starts_with(&GS_RESET) => reset(),
-            [address @ .., volume, _, 0xF7] if *address == GS_MASTER_VOLUME => {
+/// The channels that play drums, a bit each: what part modes of XG and GS have made of them so far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DrumParts(u16);
+
+impl Default for DrumParts {
+    fn default() -> Self {
+        Self(1 << DRUM_CHANNEL)
+    }
+}
+
+impl DrumParts {
+    /// The events that a message is converted to, with their channels: volumes of [`ALL_CHANNELS`], bank selects, reverb sends and
+    /// program changes. `message` is the message after its byte F0. All other messages give no events.
+    pub(super) fn system_exclusive(&mut self, message: &[u8]) -> Vec<(u8, EventKind)> {
+        match message {
+            [universal, _, id, 0x01..=0x03, ..] if [*universal, *id] == GENERAL_MIDI => self.reset(),
+            [0x43, _, rest @ ..] if rest.starts_with(&XG_RESET) => self.reset(),
+            [0x7F, _, first, second, fine, coarse, 0xF7] if [*first, *second] == MASTER_VOLUME => {
+                master_volume((f32::from(*coarse) * 128.0 + f32::from(*fine)) / 16_383.0)
+            }
+            [0x43, _, 0x4C, 0x08, part @ 0..=15, 0x07, mode, 0xF7] => self.set(*part, *mode > 0),
+            [0x43, _, rest @ .., volume, 0xF7] if *rest == XG_MASTER_VOLUME => {
                 master_volume(f32::from(*volume) / 127.0)
             }
-            [0x40, part @ 0x10..=0x1F, 0x15, map, ..] => drum_part(part & 15, *map > 0),
+            [0x41, _, model, set, rest @ ..] if [*model, *set] == GS_SET => match rest {
+                _ if rest.starts_with(&GS_RESET) => self.reset(),
+                [address @ .., volume, _, 0xF7] if *address == GS_MASTER_VOLUME => {
+                    master_volume(f32::from(*volume) / 127.0)
+                }
+                [0x40, part @ 0x10..=0x1F, 0x15, map, ..] => self.set(gs_channel(part & 15), *map > 0),
+                _ => Vec::new(),
+            },
             _ => Vec::new(),
-        },
-        _ => Vec::new(),
+        }
+    }
+
+    /// Sets every channel to bank 0 and its reverb send to the default (General MIDI 2), and the master volume to its maximum. The
+    /// sound of a channel changes only with its next program change.
+    fn reset(&mut self) -> Vec<(u8, EventKind)> {
+        *self = Self::default();
+        let send = EventKind::Control { controller: REVERB_SEND, value: DEFAULT_REVERB_SEND };
+        let channels = (0..16).flat_map(|channel| [(channel, bank(0)), (channel, send)]);
+        channels.chain(master_volume(1.0)).collect()
+    }
+
+    /// Gives a channel drums or melodic sounds, at once. Yamaha's XG does so by part modes (08 nn 07: 0 is normal, others are drums),
+    /// and part `nn` is channel `nn` (XG specification 1.26, 1996). A channel that has them already keeps its program.
+    fn set(&mut self, channel: u8, has_drums: bool) -> Vec<(u8, EventKind)> {
+        let before = self.0;
+        self.0 = before & !(1 << channel) | u16::from(has_drums) << channel;
+        let bank = (channel, bank(if has_drums { DRUM_BANK } else { MELODIC_BANK }));
+        if self.0 == before { vec![bank] } else { vec![bank, (channel, EventKind::Program(0))] }
     }
 }
 
@@ -53,28 +84,13 @@ fn master_volume(value: f32) -> Vec<(u8, EventKind)> {
     vec![(ALL_CHANNELS, EventKind::Control { controller: VOLUME, value: value.min(1.0) })]
 }
 
-/// Sets every channel to bank 0 and its reverb send to the default (General MIDI 2), and the master volume to its maximum. The
-/// sound of a channel changes only with its next program change.
-fn reset() -> Vec<(u8, EventKind)> {
-    let send = EventKind::Control { controller: REVERB_SEND, value: DEFAULT_REVERB_SEND };
-    let channels = (0..16).flat_map(|channel| [(channel, bank(0)), (channel, send)]);
-    channels.chain(master_volume(1.0)).collect()
-}
-
-/// Makes a part of a GS device a drum part or a melodic part, at once.
-fn drum_part(part: u8, has_drums: bool) -> Vec<(u8, EventKind)> {
-    let channel = match part {
+/// The channel of a part of a GS device.
+fn gs_channel(part: u8) -> u8 {
+    match part {
         0 => DRUM_CHANNEL,
         1..=9 => part - 1,
         _ => part,
-    };
-    set_drums(channel, has_drums)
-}
-
-/// Gives a channel drums or melodic sounds, at once. Yamaha's XG does so by part modes (08 nn 07: 0 is normal, others are drums), and
-/// part `nn` is channel `nn` (XG specification 1.26, 1996).
-fn set_drums(channel: u8, has_drums: bool) -> Vec<(u8, EventKind)> {
-    vec![(channel, bank(if has_drums { DRUM_BANK } else { MELODIC_BANK })), (channel, EventKind::Program(0))]
+    }
 }
 
 #[cfg(test)]
@@ -84,9 +100,9 @@ mod tests {
 
     #[test]
     fn a_gs_part_for_drums_plays_drums_until_a_reset() {
-        let mut banks = Banks::default();
+        let (mut banks, mut parts) = (Banks::default(), DrumParts::default());
         let mut send = |message: &[u8]| {
-            let events = system_exclusive(message);
+            let events = parts.system_exclusive(message);
             events.into_iter().map(|(channel, kind)| (channel, banks.resolve(channel, kind))).collect::<Vec<_>>()
         };
         // An address of 40 1A is channel 11, and one of 40 11 is channel 1.
@@ -97,6 +113,7 @@ mod tests {
         assert_eq!(off[1], (DRUM_CHANNEL, EventKind::Program(0)));
         let xg = send(&[0x43, 0x10, 0x4C, 0x08, 0x03, 0x07, 0x02, 0xF7]);
         assert_eq!(xg[1], (3, EventKind::Program(MELODIC)));
+        assert_eq!(send(&[0x43, 0x10, 0x4C, 0x08, 0x03, 0x07, 0x03, 0xF7]).len(), 1, "it keeps the program");
         assert_eq!(send(&[0x43, 0x10, 0x4C, 0x08, 0x03, 0x07, 0x00, 0xF7])[1], (3, EventKind::Program(0)));
         for reset in [
             &[0x7E, 0x7F, 0x09, 0x01, 0xF7][..],
@@ -117,7 +134,7 @@ mod tests {
             (&[0x43, 0x10, 0x4C, 0x00, 0x00, 0x04, 0x00, 0xF7], 0.0),
             (&[0x41, 0x10, 0x42, 0x12, 0x40, 0x00, 0x04, 0x7F, 0x3D, 0xF7], 1.0),
         ] {
-            assert_eq!(system_exclusive(message), master_volume(value));
+            assert_eq!(DrumParts::default().system_exclusive(message), master_volume(value));
         }
     }
 }

@@ -7,7 +7,7 @@
 use super::limits::MAX_EVENTS;
 use crate::engine::EventKind;
 use crate::engine::banks::DRUM_CHANNEL;
-use crate::engine::midi::controller::{DATA, RPN, RPN_FINE};
+use crate::engine::midi::controller::{DATA, NRPN, NRPN_FINE, RESET, RPN, RPN_FINE};
 use std::collections::BTreeMap;
 
 /// Registered parameters, by their less significant bytes: tuning program and tuning bank.
@@ -164,6 +164,8 @@ impl Device {
         match (controller, self.selected[index]) {
             (RPN, _) => self.selected[index][0] = data,
             (RPN_FINE, _) => self.selected[index][1] = data,
+            // A parameter that is not registered is selected, or none.
+            (NRPN | NRPN_FINE | RESET, _) => self.selected[index] = [127; 2],
             (DATA, [0, PROGRAM]) => self.playing[index] = playing & !127 | u16::from(data),
             (DATA, [0, BANK]) => self.playing[index] = playing & 127 | u16::from(data) << 7,
             _ => {}
@@ -233,6 +235,17 @@ mod tests {
         let choose = [control(5, RPN, 0), control(5, RPN_FINE, PROGRAM), control(5, DATA, 3), control(9, DATA, 0)];
         let events = spread(choose.to_vec(), &[(0, message)]).unwrap();
         assert_eq!(tuned(&events), [(5, 2, 69, 69.5, false), (9, 2, 69, 69.0, false)]);
+    }
+
+    #[test]
+    fn other_parameters_and_a_reset_choose_no_tuning_program() {
+        let message = Message::read(&[0x7F, 0x7F, 8, 2, 5, 1, 60, 67, 64, 0, 0xF7]).unwrap();
+        for (between, tunes) in [(7, 1), (NRPN, 0), (NRPN_FINE, 0), (RESET, 0)] {
+            let choose =
+                [control(1, RPN, 0), control(1, RPN_FINE, PROGRAM), control(1, between, 1), control(2, DATA, 5)];
+            let events = spread(choose.to_vec(), &[(0, message.clone())]).unwrap();
+            assert_eq!(tuned(&events).len(), tunes, "{between}");
+        }
     }
 
     #[test]
