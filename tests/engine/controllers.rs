@@ -151,7 +151,8 @@ fn keys_with_a_tuning_of_their_own_stay_and_pads_follow_the_key_whose_pitch_they
     let pad = |pitch| Some(Pad { pitch, ..Pad::of(0) });
     let mut pads = vec![None; 128];
     (pads[36], pads[38]) = (pad(Some(60.25)), pad(None));
-    let kit = Arc::new(Kit::new("kit".to_owned(), vec![Arc::new(Sound::new(patch())); 2], pads));
+    let sounds = [patch(), patch()].map(|patch| Arc::new(Sound::new(patch)));
+    let kit = Arc::new(Kit::new("kit".to_owned(), sounds.to_vec(), pads));
     for (key, tuned, pitch) in [(36, 36, 60.25), (36, 60, 67.5), (38, 38, 67.25), (38, 60, 38.0)] {
         assert_eq!(sounding(&kit, key, &[tune(tuned, 67.25)]), pitch, "key {key}, tuned {tuned}");
     }
