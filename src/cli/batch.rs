@@ -117,7 +117,8 @@ mod tests {
     fn jobs_have_the_options_of_render() {
         let command = crate::Cli::command();
         let render = command.find_subcommand("render").unwrap();
-        let own = ["block", "figure", "force", "help", "json", "output", "threads"];
+        // A batch has its own format, and a job is one file of a sound that ends.
+        let own = ["block", "figure", "force", "format", "help", "is_loop", "json", "output", "stems", "threads"];
         let options: BTreeSet<&str> = render.get_arguments().map(|arg| arg.get_id().as_str()).collect();
         let names: BTreeSet<&str> = Request::NAMES.iter().map(|name| name.name).collect();
         let expected = options.into_iter().filter(|option| !own.contains(option));
