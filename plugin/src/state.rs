@@ -15,7 +15,8 @@ use nice_plug::prelude::{PluginState, nice_error};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use sprung::params::{PARAM_COUNT, PARAMS, Param, Unit, Values};
-use sprung::preset::{Playable, Preset};
+use sprung::patch::Patch;
+use sprung::preset::{Guide, Playable, Preset};
 use std::collections::BTreeMap;
 
 /// The wrapper's name for the state.
@@ -96,10 +97,11 @@ struct Saved {
 }
 
 impl Default for State {
-    /// A new instance has a body to strike.
     fn default() -> Self {
-        let preset = Preset::find("Church Bell").expect("a factory preset");
-        Self::new(Playable::Preset(preset.clone()), 0, VIEW)
+        let (name, author, tags, comment) = ("Init".to_owned(), String::new(), Vec::new(), String::new());
+        let (guide, patch) = (Guide::default(), Patch::default());
+        let preset = Preset { name, author, tags, comment, guide, patch, tuning: None };
+        Self::new(Playable::Preset(preset), 0, VIEW)
     }
 }
 

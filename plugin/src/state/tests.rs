@@ -6,8 +6,6 @@ use nice_plug::prelude::{Param as _, Params as _};
 use nice_plug_core::plugin::ParamValue;
 use proptest::prelude::*;
 use sprung::params::{PARAM_COUNT, Param};
-use sprung::patch::Patch;
-use sprung::preset::Guide;
 use std::path::Path;
 
 /// A state as the wrapper stores it.
