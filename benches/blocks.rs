@@ -4,24 +4,19 @@
 //! least of [`RUNS`] runs. Prints a table: of the blocks of a song, the median, the 99th and the 99.99th percentile and the
 //! worst, in % of a block's duration.
 
+mod song;
+
+use song::{RATE, Sounds, song};
 use sprung::engine::EventKind;
 use sprung::io::{Song, song::SongEvent};
 use sprung::params::{Choice, Param, Space};
-use sprung::preset::{Preset, Programs};
-use sprung::render::{Job, Options, Tail, on_threads};
+use sprung::preset::Preset;
+use sprung::render::on_threads;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-const RATE: u32 = 48_000;
 const FRAMES: usize = 64;
 const RUNS: usize = 5;
-
-fn song(name: &str) -> Song {
-    let file = format!("{}/assets/midi/{name}.mid", env!("CARGO_MANIFEST_DIR"));
-    let mut song = Song::read(std::fs::File::open(&file).unwrap(), &file).unwrap();
-    song.select_by_bank();
-    song
-}
 
 /// The song, but once a second one of the first five channels, which have most of its notes, changes to another space.
 fn with_spaces_switched(mut song: Song) -> Song {
@@ -35,10 +30,8 @@ fn with_spaces_switched(mut song: Song) -> Song {
 
 /// The time of each block in seconds: the least of some runs.
 fn block_times(song: &Song) -> Vec<f64> {
-    let kit = Preset::find("init").unwrap().kit();
-    let programs = Programs::factory_kits();
-    let options = Options { sample_rate: RATE, seed: 0, block: FRAMES, tail: Tail::None };
-    let job = Job { programs: &programs, mix: Some(&Programs::general_midi().mix), ..Job::new(song, &kit, options) };
+    let sounds = Sounds::new();
+    let job = sounds.job(song, FRAMES);
     let mut least = vec![f64::INFINITY; (job.song_frames() as usize).div_ceil(FRAMES)];
     for _ in 0..RUNS {
         let (mut block, mut before) = (0, None::<Instant>);

@@ -1,19 +1,15 @@
 //! The demo song, from MIDI file to samples, on one thread and on two.
 
+mod song;
+
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use sprung::io::Song;
-use sprung::preset::{Preset, Programs};
-use sprung::render::{Job, Options, Tail, on_threads};
+use song::Sounds;
+use sprung::render::on_threads;
 use std::time::Duration;
 
 fn render(criterion: &mut Criterion) {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/midi/suite.mid");
-    let mut song = Song::read(std::fs::File::open(file).unwrap(), file).unwrap();
-    song.select_by_bank();
-    let kit = Preset::find("init").unwrap().kit();
-    let programs = Programs::factory_kits();
-    let options = Options { sample_rate: 48_000, seed: 0, block: 4096, tail: Tail::None };
-    let job = Job { programs: &programs, mix: Some(&Programs::general_midi().mix), ..Job::new(&song, &kit, options) };
+    let (song, sounds) = (song::song("suite"), Sounds::new());
+    let job = sounds.job(&song, 4096);
     let mut group = criterion.benchmark_group("suite.mid");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(job.song_frames()));
     for threads in [1, 2] {

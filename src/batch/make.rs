@@ -47,11 +47,7 @@ pub(super) fn make(task: &Task, batch: &Batch, check: &(dyn Fn() -> Result<()> +
     // A resumed batch replaces files that an interrupted run left. A new batch replaces nothing.
     let mut output = Output::create(&Target::Path(path), batch.resume, &inputs).map_err(is_there)?;
     let render = |output: &mut Output| to_labelled_wav(&job, &prepared.delivery, output, |_: Progress| check());
-    let (report, labels) = match batch.format {
-        FileFormat::Wav => render(&mut output),
-        FileFormat::Flac => flac::through_wav(&mut output, render),
-    }
-    .map_err(located)?;
+    let (report, labels) = flac::write_as(batch.format, &mut output, render).map_err(located)?;
     let sha256 = sha256_of(output.stream()).map_err(|source| Error::io(output.name(), source))?;
     output.commit().map_err(is_there)?;
     Ok(line(task, &job, &file, &sha256, &report, &labels, &warnings))

@@ -1,9 +1,10 @@
 //! The manifest of a batch: a line of JSON for each finished job, in the order of their numbers.
 
 use crate::error::{Error, Result};
+use crate::io::Journal;
 use serde_json::{Map, Value};
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 /// The version that writes the lines. Another version may render other sounds for the same jobs.
@@ -148,10 +149,9 @@ impl Known {
     }
 }
 
-/// The manifest that is being written. While it is open, no other process can write it.
+/// The manifest that is being written.
 pub(super) struct Manifest {
-    name: String,
-    file: File,
+    journal: Journal,
     /// Number of lines that existed at the start.
     pub(super) lines: u64,
 }
@@ -160,40 +160,17 @@ impl Manifest {
     /// Opens or creates a manifest. With `resume`, an existing one is continued; an incomplete last line is cut off. Without, it must be
     /// empty: a batch whose first job failed leaves it so.
     pub(super) fn open(path: &Path, resume: bool) -> Result<Self> {
-        let name = path.display().to_string();
-        let failed = |source| Error::io(&name, source);
-        let mut file =
-            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
-        match file.try_lock() {
-            Err(TryLockError::WouldBlock) => return Err(Error::Locked { path: name }),
-            // Some file systems have no locks.
-            Ok(()) | Err(TryLockError::Error(_)) => {}
-        }
-        if !resume && file.metadata().map_err(failed)?.len() > 0 {
+        let mut journal = Journal::open(path)?;
+        if !resume && !journal.is_empty()? {
             let message = "a batch is there already: add --resume to go on with it, or choose another folder";
-            return Err(Error::value(&name, message));
+            return Err(Error::value(&journal.name, message));
         }
-        let (mut lines, mut whole, mut block) = (0, 0, vec![0; 1 << 16]);
-        let mut at = 0;
-        loop {
-            let read = file.read(&mut block).map_err(failed)?;
-            if read == 0 {
-                break;
-            }
-            for (index, _) in block[..read].iter().enumerate().filter(|(_, byte)| **byte == b'\n') {
-                (lines, whole) = (lines + 1, at + index as u64 + 1);
-            }
-            at += read as u64;
-        }
-        file.set_len(whole).map_err(failed)?;
-        file.seek(SeekFrom::Start(whole)).map_err(failed)?;
-        Ok(Self { name, file, lines })
+        let lines = journal.go_on()?;
+        Ok(Self { journal, lines })
     }
 
     /// Appends a line.
     pub(super) fn write(&mut self, line: &str) -> Result<()> {
-        // In one write, so that a killed process leaves a whole line or the beginning of one.
-        let written = self.file.write_all(format!("{line}\n").as_bytes());
-        written.map_err(|source| Error::io(&self.name, source))
+        self.journal.write(line)
     }
 }

@@ -32,7 +32,11 @@ impl FileFormat {
     ///
     /// # Errors
     /// The option that is wrong, and a message that says what would be right.
-    pub fn check(self, samples: SampleFormat, sample_rate: u32) -> std::result::Result<(), (&'static str, String)> {
+    pub(crate) fn check(
+        self,
+        samples: SampleFormat,
+        sample_rate: u32,
+    ) -> std::result::Result<(), (&'static str, String)> {
         match self {
             Self::Flac if samples == SampleFormat::Float32 => {
                 Err(("bits", "FLAC has no floats: expected 16 or 24, or --format wav".to_owned()))
@@ -43,6 +47,14 @@ impl FileFormat {
             )),
             _ => Ok(()),
         }
+    }
+
+    /// As [`FileFormat::check`], with an error that names the command's option.
+    ///
+    /// # Errors
+    /// [`Error::Value`].
+    pub fn check_options(self, samples: SampleFormat, sample_rate: u32) -> Result<()> {
+        self.check(samples, sample_rate).map_err(|(option, message)| Error::value(format!("--{option}"), message))
     }
 
     /// Checks that a file of at least so many frames can have the format.

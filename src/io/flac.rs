@@ -1,6 +1,6 @@
 //! Turns WAV files of integers into FLAC files.
 
-use super::file_format::{HIGHEST_RATE, check_wav_length};
+use super::file_format::{FileFormat, HIGHEST_RATE, check_wav_length};
 use super::output::Output;
 use crate::error::{Error, Result};
 use flacenc::bitsink::ByteSink;
@@ -14,11 +14,19 @@ use std::io::{BufReader, BufWriter, Seek, SeekFrom, Write};
 /// Frames per block.
 const BLOCK: usize = 4096;
 
-/// Lets `write` write a WAV file that never gets a name, and encodes it into `output`, which need not be seekable.
+/// Lets `write` write a WAV file into `output`, or for FLAC what [`encode`] makes of that file. `output` need not be seekable.
 ///
 /// # Errors
-/// Those of `write`; [`Error::Value`] for floats and for rates above 96 kHz, [`Error::Io`].
-pub fn through_wav<T>(output: &mut Output, write: impl FnOnce(&mut Output) -> Result<T>) -> Result<T> {
+/// Those of `write`; for FLAC [`Error::Value`] for floats and for rates above 96 kHz, [`Error::Io`].
+pub fn write_as<T>(format: FileFormat, output: &mut Output, write: impl FnOnce(&mut Output) -> Result<T>) -> Result<T> {
+    match format {
+        FileFormat::Wav => write(output),
+        FileFormat::Flac => through_wav(output, write),
+    }
+}
+
+/// Lets `write` write a WAV file that never gets a name, and encodes it into `output`.
+fn through_wav<T>(output: &mut Output, write: impl FnOnce(&mut Output) -> Result<T>) -> Result<T> {
     let mut wav = output.scratch()?;
     let written = write(&mut wav)?;
     let name = output.name().to_owned();

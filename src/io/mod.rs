@@ -6,6 +6,8 @@ mod file_format;
 #[cfg(feature = "batch")]
 pub mod flac;
 pub mod inputs;
+#[cfg(feature = "batch")]
+mod journal;
 pub mod midi;
 pub mod output;
 mod quantise;
@@ -31,6 +33,8 @@ pub use bars::SongTime;
 #[cfg(feature = "batch")]
 pub use file_format::FileFormat;
 pub use inputs::Inputs;
+#[cfg(feature = "batch")]
+pub(crate) use journal::Journal;
 pub(crate) use midi::{MidiFile, Reading};
 pub use output::Output;
 pub(crate) use quantise::quantise;

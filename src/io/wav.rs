@@ -6,16 +6,11 @@ use super::sampler_chunk::{Loop, sampler_chunk};
 use super::wav_format::{SampleFormat, WavFormat};
 use crate::dsp::random;
 use crate::error::{Error, Result};
-use std::io::{Seek, SeekFrom, Write};
-
-/// Bytes that are written at a time.
-const WRITTEN_AT_ONCE: usize = 1 << 16;
+use std::io::{BufWriter, Seek, SeekFrom, Write};
 
 /// Writes blocks of frames to a WAV file: RIFF up to 4 GiB, RF64 (EBU Tech 3306) for longer files.
 pub struct WavWriter<W: Write + Seek> {
-    out: W,
-    /// Bytes that are not written yet.
-    bytes: Vec<u8>,
+    out: BufWriter<W>,
     name: String,
     format: WavFormat,
     /// One stream of random numbers per channel.
@@ -56,7 +51,7 @@ impl<W: Write + Seek> WavWriter<W> {
     }
 
     fn open(
-        mut out: W,
+        out: W,
         name: &str,
         format: WavFormat,
         dither: Option<u64>,
@@ -64,20 +59,11 @@ impl<W: Write + Seek> WavWriter<W> {
         further: Vec<u8>,
     ) -> Result<Self> {
         format.file_len(frames.unwrap_or(0))?;
+        let mut out = BufWriter::with_capacity(1 << 16, out);
         let header = riff::header_with(&format, frames.unwrap_or(0), further.len() as u64);
         out.write_all(&header).map_err(|source| Error::io(name, source))?;
         let dither = dither.map(|seed| [random::key(seed, 0), random::key(seed, 1)]);
-        Ok(Self {
-            out,
-            bytes: Vec::new(),
-            name: name.to_owned(),
-            format,
-            dither,
-            frames: 0,
-            expected: frames,
-            clipped: 0,
-            further,
-        })
+        Ok(Self { out, name: name.to_owned(), format, dither, frames: 0, expected: frames, clipped: 0, further })
     }
 
     /// Appends a block: one slice per channel (the second is ignored for a file with one channel); 1.0 is full scale.
@@ -94,19 +80,14 @@ impl<W: Write + Seek> WavWriter<W> {
             for (channel, samples) in channels.iter().enumerate() {
                 let sample = samples[index];
                 match self.format.samples {
-                    SampleFormat::Float32 => hound::Sample::write(sample, &mut self.bytes, bits),
-                    _ => hound::Sample::write(self.quantise(sample, channel, n), &mut self.bytes, bits),
+                    SampleFormat::Float32 => hound::Sample::write(sample, &mut self.out, bits),
+                    _ => hound::Sample::write(self.quantise(sample, channel, n), &mut self.out, bits),
                 }
                 .map_err(|error| wav_error(&self.name, error))?;
             }
         }
         self.frames += frames as u64;
-        if self.bytes.len() < WRITTEN_AT_ONCE {
-            return Ok(());
-        }
-        let written = self.out.write_all(&self.bytes).map_err(|source| Error::io(&self.name, source));
-        self.bytes.clear();
-        written
+        Ok(())
     }
 
     /// Number of samples so far that were clipped. Only integers are.
@@ -127,7 +108,6 @@ impl<W: Write + Seek> WavWriter<W> {
     }
 
     fn complete(&mut self) -> std::io::Result<()> {
-        self.out.write_all(&self.bytes)?;
         if riff::padding(self.frames * self.format.frame_len()) == 1 {
             self.out.write_all(&[0])?;
         }

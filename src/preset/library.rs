@@ -3,7 +3,7 @@
 use super::about::MAX_LABEL;
 use super::{Playable, Preset, is_file_name};
 use crate::error::{Error, Result};
-use crate::text::slug;
+use crate::text::file_stem;
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -69,12 +69,11 @@ impl Library {
     /// again, [`Error::Io`] if it cannot be written.
     pub fn save(&self, preset: &Preset, replace: bool) -> Result<PathBuf> {
         let text = text_of(preset)?;
-        let slug = slug(&preset.name);
-        let slug = if slug.is_empty() { "sound" } else { &slug };
+        let stem = file_stem(&preset.name);
         let folder = self.presets_folder();
         let place = |number: u32| match number {
-            1 => folder.join(format!("{slug}.toml")),
-            number => folder.join(format!("{slug}-{number}.toml")),
+            1 => folder.join(format!("{stem}.toml")),
+            number => folder.join(format!("{stem}-{number}.toml")),
         };
         let is_it = |path: &PathBuf| matches!(read(path), Ok(Playable::Preset(found)) if found.name.eq_ignore_ascii_case(&preset.name));
         let paths = self.paths();

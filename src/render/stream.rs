@@ -68,9 +68,7 @@ impl Job<'_> {
         }
         Ok(stream.rendered())
     }
-}
 
-impl Job<'_> {
     /// Renders without the limiter, and hands each block to `sink`. Also says whether the limiter would have been on.
     pub(super) fn render_unlimited(
         &self,
@@ -78,30 +76,22 @@ impl Job<'_> {
     ) -> Result<(Rendered, bool)> {
         let mut stream = Stream::new(self)?;
         stream.ensemble.leave_unlimited();
-        let [mut left, mut right] = [vec![0.0; self.options.block], vec![0.0; self.options.block]];
-        loop {
-            match stream.fill(&mut left, &mut right) {
-                0 => return Ok((stream.rendered(), stream.ensemble.is_limiter_wanted())),
-                frames => sink(&left[..frames], &right[..frames])?,
-            }
-        }
+        stream.each_block(self.options.block, |_, left, right| sink(left, right))?;
+        Ok((stream.rendered(), stream.ensemble.is_limiter_wanted()))
     }
 
     /// Renders, and hands the stems of each block and its number of frames to `sink`.
     pub(super) fn render_stems(&self, mut sink: impl FnMut(&Stems, usize) -> Result<()>) -> Result<Rendered> {
         let mut stream = Stream::new(self)?;
         stream.ensemble.keep_stems();
-        let [mut left, mut right] = [vec![0.0; self.options.block], vec![0.0; self.options.block]];
-        loop {
-            let frames = stream.fill(&mut left, &mut right);
-            if frames == 0 {
-                return Ok(stream.rendered());
-            }
-            if let Some(stems) = stream.ensemble.stems() {
-                sink(stems, frames)?;
+        stream.each_block(self.options.block, |ensemble, left, _| {
+            if let Some(stems) = ensemble.stems() {
+                sink(stems, left.len())?;
                 stems.clear();
             }
-        }
+            Ok(())
+        })?;
+        Ok(stream.rendered())
     }
 }
 
@@ -160,6 +150,21 @@ impl<'a> Stream<'a> {
             self.ensemble.process(&self.events, &mut left[..frames], &mut right[..frames]);
         }
         self.ensemble.leave_out_notes(false);
+    }
+
+    /// Renders to the end, and hands the ensemble and its output to `visit` after each block of up to so many frames.
+    fn each_block(
+        &mut self,
+        frames: usize,
+        mut visit: impl FnMut(&mut Ensemble, &[f32], &[f32]) -> Result<()>,
+    ) -> Result<()> {
+        let [mut left, mut right] = [vec![0.0; frames], vec![0.0; frames]];
+        loop {
+            match self.fill(&mut left, &mut right) {
+                0 => return Ok(()),
+                frames => visit(&mut self.ensemble, &left[..frames], &right[..frames])?,
+            }
+        }
     }
 
     /// Fills both slices, which have the same length, and returns the number of frames. It is smaller than their length

@@ -2,10 +2,9 @@
 
 use super::settings::Sampling;
 use crate::error::{Error, Result};
+use crate::io::Journal;
 use crate::preset::Playable;
 use serde_json::{Value, json};
-use std::fs::{self, File, OpenOptions};
-use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
@@ -23,9 +22,8 @@ pub(super) struct Line {
 
 /// The list, as it was at the start, and open to be continued.
 pub(super) struct List {
-    name: String,
     known: Vec<Line>,
-    file: Mutex<File>,
+    journal: Mutex<Journal>,
     /// The first line, until it is written.
     settings: Option<String>,
 }
@@ -46,34 +44,24 @@ impl Line {
 impl List {
     /// Opens the list of a folder.
     pub(super) fn open(sampling: &Sampling, playable: &Playable) -> Result<Self> {
-        let path = sampling.folder.join("samples.jsonl");
-        let name = path.display().to_string();
-        let failed = |source| Error::io(&name, source);
-        let settings = settings(sampling, playable);
-        let before = match fs::read_to_string(&path) {
-            Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
-            Err(error) => return Err(failed(error)),
-        };
+        let mut journal = Journal::open(&sampling.folder.join("samples.jsonl"))?;
+        let (settings, before) = (settings(sampling, playable), journal.text()?);
         // A line without an end was cut off when its writer was killed.
         let whole = before.rfind('\n').map_or(0, |end| end + 1);
         let mut lines = before[..whole].lines();
         let first = lines.next();
         if first.is_some() && !sampling.resume {
             let message = "an instrument is there already: add --resume to go on with it, or choose another folder";
-            return Err(Error::value(&name, message));
+            return Err(Error::value(&journal.name, message));
         }
         if first.is_some_and(|first| first != settings) {
             let message = "it has other settings, or another version has made it: expected the same, or another folder";
-            return Err(Error::value(&name, message));
+            return Err(Error::value(&journal.name, message));
         }
         let known = lines.filter_map(Line::parse).collect();
-        // Not in the mode that appends: Windows does not let such a file be shortened.
-        let mut options = OpenOptions::new();
-        let mut file = options.read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;
-        file.set_len(whole as u64).and_then(|()| file.seek(SeekFrom::End(0))).map_err(failed)?;
+        journal.go_on()?;
         let settings = Some(settings).filter(|_| first.is_none());
-        Ok(Self { name, known, file: Mutex::new(file), settings })
+        Ok(Self { known, journal: Mutex::new(journal), settings })
     }
 
     /// Writes the settings if the list is new. From then on, the folder has an instrument that can be resumed.
@@ -93,9 +81,7 @@ impl List {
     }
 
     fn write(&self, line: &str) -> Result<()> {
-        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
-        // In one write, so that a killed process leaves a whole line or the beginning of one.
-        file.write_all(format!("{line}\n").as_bytes()).map_err(|source| Error::io(&self.name, source))
+        self.journal.lock().unwrap_or_else(PoisonError::into_inner).write(line)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::io::{Inputs, Output, Target, WavFormat};
 use crate::preset::Playable;
 use crate::render::on_threads;
 use crate::sound::Kit;
-use crate::text::slug;
+use crate::text::file_stem;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::fs;
 use std::io::Write;
@@ -41,9 +41,7 @@ impl Sampling {
         inputs: &Inputs,
         progress: &(dyn Fn(usize, usize) -> Result<()> + Sync),
     ) -> Result<Sampled> {
-        self.format
-            .check(self.bits, self.rate)
-            .map_err(|(option, message)| Error::value(format!("--{option}"), message))?;
+        self.format.check_options(self.bits, self.rate)?;
         let format = WavFormat { sample_rate: self.rate, channels: 2, samples: self.bits };
         let frames = self.length * f64::from(self.rate);
         if frames < 1.0 {
@@ -55,7 +53,7 @@ impl Sampling {
         fs::create_dir_all(&samples).map_err(|source| Error::io(samples.display().to_string(), source))?;
         let list = List::open(self, playable)?;
         // Opened before the work, which would be lost if a file were in the way.
-        let name = Some(slug(playable.name())).filter(|name| !name.is_empty()).unwrap_or_else(|| "sound".to_owned());
+        let name = file_stem(playable.name());
         let open = |ending: &str| {
             let path = self.folder.join(format!("{name}.{ending}"));
             Output::create(&Target::Path(path), self.resume, inputs)

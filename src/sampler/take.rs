@@ -6,7 +6,7 @@ use super::settings::Sampling;
 use super::strike::strike;
 use super::{release, steady};
 use crate::error::Result;
-use crate::io::{FileFormat, Inputs, Loop, Output, Target, WavFormat, WavWriter, flac};
+use crate::io::{Inputs, Loop, Output, Target, WavFormat, WavWriter, flac};
 use crate::sound::Kit;
 use std::sync::Arc;
 
@@ -46,10 +46,7 @@ pub(super) fn make(sampling: &Sampling, plan: &Plan, kit: &Arc<Kit>, take: &Take
         writer.write(&sound[0], &sound[1])?;
         writer.finish()
     };
-    match sampling.format {
-        FileFormat::Wav => write(&mut output)?,
-        FileFormat::Flac => flac::through_wav(&mut output, write)?,
-    }
+    flac::write_as(sampling.format, &mut output, write)?;
     output.commit()?;
     Ok(Line { file, frames: end as u64, looped: looped.map(|Loop { start, end }| [start, end]), release })
 }

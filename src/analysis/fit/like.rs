@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::io::sound_file::{Recording, resampled};
 use crate::params::Param;
 use crate::preset::Preset;
-use crate::units::key_from_frequency;
+use crate::units::{gain_from_db, key_from_frequency};
 
 /// Most seconds that are compared, and those of the first look.
 const LONGEST: f64 = 3.0;
@@ -95,7 +95,7 @@ fn estimated(sound: &[f32]) -> f64 {
     let found = modes(&[sound.to_vec()], RATE.into(), &settings, &mut |_| true);
     let strikes = found.map(|found| found.strikes).unwrap_or_default();
     let partial = |mode: &modes::Mode| {
-        let amplitude = libm::pow(10.0, 0.05 * mode.level_db);
+        let amplitude = gain_from_db(mode.level_db);
         Partial { frequency: mode.frequency, t60: mode.t60, amplitude, phase: 0.0, pan: 0.0, struck: true }
     };
     let partials: Vec<Partial> =

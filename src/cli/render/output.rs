@@ -5,7 +5,7 @@ use super::{figure, report};
 use crate::progress::Bar;
 use crate::terminal::warn;
 use crate::{interrupt, recording};
-use sprung::io::{FileFormat, Inputs, Output, Target, flac};
+use sprung::io::{Inputs, Output, Target, flac};
 use sprung::render::{Progress, on_threads, to_looped_wav, to_wav};
 use sprung::request::Request;
 use sprung::{Error, Result};
@@ -17,7 +17,7 @@ pub(super) fn run(args: &Args, request: &Request, target: &Target) -> Result<()>
         return Err(Error::value("--output", "stdout is a terminal: expected a file, or stdout sent to one"));
     }
     let format = target.file_format(args.format)?;
-    format.check(args.bits, args.rate).map_err(|(option, message)| Error::value(format!("--{option}"), message))?;
+    format.check_options(args.bits, args.rate)?;
     let mut inputs = Inputs::default();
     let prepared = request.prepare(&mut inputs, &mut warn)?;
     let (job, delivery) = (prepared.job(), &prepared.delivery);
@@ -37,10 +37,7 @@ pub(super) fn run(args: &Args, request: &Request, target: &Target) -> Result<()>
         true => to_looped_wav(&job, delivery, output, progress),
         false => to_wav(&job, delivery, output, progress),
     };
-    let report = on_threads(args.threads, || match format {
-        FileFormat::Wav => write(&mut output),
-        FileFormat::Flac => flac::through_wav(&mut output, write),
-    })??;
+    let report = on_threads(args.threads, || flac::write_as(format, &mut output, write))??;
     drop(bar);
     if let Some(figure) = figure {
         let title = target.name();

@@ -14,7 +14,7 @@ use std::path::Path;
 /// Renders a request into the stems of its song.
 pub(super) fn run(args: &Args, request: &Request, folder: &Path) -> Result<()> {
     let format = args.format.unwrap_or(FileFormat::Wav);
-    format.check(args.bits, args.rate).map_err(|(option, message)| Error::value(format!("--{option}"), message))?;
+    format.check_options(args.bits, args.rate)?;
     let mut inputs = Inputs::default();
     let prepared = request.prepare(&mut inputs, &mut warn)?;
     let job = prepared.job();

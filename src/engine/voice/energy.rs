@@ -83,8 +83,7 @@ impl Energy {
                 self.pending = 0.0;
             }
             if rings {
-                let gain = f64::from(fader.loudest()).max(1.0);
-                bank.rest_below((LEFT_OUT / (gain * bank.len() as f64)) as f32);
+                bank.rest_below((LEFT_OUT / (gain(fader) * bank.len() as f64)) as f32);
             }
         }
         self.until_measured -= 1;
@@ -93,13 +92,13 @@ impl Energy {
     /// Whether the sum of the modes cannot reach an amplitude, even with all modes in phase: n amplitudes whose squares
     /// sum to E add up to √(n E) at most.
     fn is_below(&self, amplitude: f64, bank: &Cells, fader: &Fader) -> bool {
-        let gain = f64::from(fader.loudest()).max(1.0);
+        let gain = gain(fader);
         self.measured * bank.len() as f64 * gain * gain < amplitude * amplitude
     }
 
     /// Upper bound of the amplitude from now on: the amplitude with all modes in phase.
     pub(super) fn peak(&self, bank: &Cells, fader: &Fader) -> f64 {
-        let gain = f64::from(fader.loudest()).max(1.0);
+        let gain = gain(fader);
         (sqrt(self.measured) + sqrt(self.pending.max(0.0))) * sqrt(bank.len() as f64) * gain
     }
 
@@ -140,7 +139,7 @@ impl Energy {
     /// Frames until the end is detected. The energy is measured every [`MEASURING_TICKS`] ticks, or at every tick if the
     /// interval is 1 or the voice is nearly silent. The voice ends at the first measurement below the limit.
     fn find_end(&self, bank: &Cells, strike: &Strike, fader: &Fader, blooms: bool, to_tick: u64) -> u64 {
-        let gain = f64::from(fader.loudest()).max(1.0);
+        let gain = gain(fader);
         let share = 1.0 / (bank.len().max(1) as f64 * gain * gain);
         let below = |amplitude: f64| amplitude * amplitude * share;
         if self.pending > 0.0 || blooms {
@@ -161,6 +160,11 @@ impl Energy {
         let found = first + nearly.saturating_sub(first).div_ceil(interval) * interval;
         every_tick.max(found)
     }
+}
+
+/// The gain at which a voice is judged: its own, or 1 if that is less, since it may rise.
+fn gain(fader: &Fader) -> f64 {
+    f64::from(fader.loudest()).max(1.0)
 }
 
 fn round_up(frames: u64) -> u64 {

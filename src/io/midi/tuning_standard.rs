@@ -8,6 +8,7 @@ use super::limits::MAX_EVENTS;
 use crate::engine::EventKind;
 use crate::engine::banks::DRUM_CHANNEL;
 use crate::engine::midi::controller::{DATA, NRPN, NRPN_FINE, RESET, RPN, RPN_FINE};
+use crate::engine::midi::seven_bits;
 use std::collections::BTreeMap;
 
 /// Registered parameters, by their less significant bytes: tuning program and tuning bank.
@@ -139,12 +140,9 @@ impl Device {
                         *place = *pitch;
                     }
                 }
-                let pitches = *pitches;
-                let program = *program;
+                let (pitches, playing) = (*pitches, self.playing);
                 (0..16)
-                    .filter(|channel| self.playing[usize::from(*channel)] == program)
-                    .collect::<Vec<u8>>()
-                    .into_iter()
+                    .filter(|channel| playing[usize::from(*channel)] == *program)
                     .try_for_each(|channel| self.tune(tick, channel, &pitches, *sounding))
             }
             Change::Octave { channels, offsets } => {
@@ -159,7 +157,7 @@ impl Device {
     /// Follows the choice of a tuning program.
     fn follow(&mut self, tick: u64, channel: u8, kind: &EventKind) -> Result<(), String> {
         let EventKind::Control { controller, value } = *kind else { return Ok(()) };
-        let (index, data) = (usize::from(channel), (value * 127.0 + 0.5) as u8);
+        let (index, data) = (usize::from(channel), seven_bits(value));
         let playing = self.playing[index];
         match (controller, self.selected[index]) {
             (RPN, _) => self.selected[index][0] = data,

@@ -30,8 +30,21 @@ pub(crate) struct BodyEdit {
 }
 
 impl BodyEdit {
+    /// Makes the sound from another body, as one step that can be undone. The error says why it cannot be made.
+    pub(crate) fn make(
+        before: &Origin,
+        after: Origin,
+        what: String,
+        loaded: &Arc<Loaded>,
+        controls: &mut Controls,
+    ) -> Result<(), String> {
+        let mut edit = Self::begin(before, loaded, controls);
+        edit.change(after, what);
+        edit.end(controls)
+    }
+
     /// Begins to change the body from which the modes of `loaded` are made.
-    pub(crate) fn begin(origin: &Origin, loaded: &Arc<Loaded>, controls: &mut Controls) -> Self {
+    pub(super) fn begin(origin: &Origin, loaded: &Arc<Loaded>, controls: &mut Controls) -> Self {
         controls.release();
         controls.history.begin(controls.params);
         let decay = f64::from(controls.value(Param::Decay.info()));
@@ -57,7 +70,7 @@ impl BodyEdit {
     }
 
     /// Sets the body from which the sound is made next.
-    pub(crate) fn change(&mut self, origin: Origin, what: String) {
+    pub(super) fn change(&mut self, origin: Origin, what: String) {
         (self.origin, self.what, self.is_new) = (origin, what, true);
     }
 
@@ -95,7 +108,7 @@ impl BodyEdit {
     }
 
     /// Makes the sound a last time and ends the undo step. The error is that of [`BodyEdit::write`].
-    pub(crate) fn end(mut self, controls: &mut Controls) -> Result<(), String> {
+    pub(super) fn end(mut self, controls: &mut Controls) -> Result<(), String> {
         let result = self.write(f64::INFINITY, controls);
         controls.history.end(self.what, controls.params);
         let position = controls.position(Param::Decay.info());

@@ -29,9 +29,10 @@ pub(crate) fn paint(
     let form = figure.form;
     let displaced = |number: usize| displacements.get(number).copied().unwrap_or(0.0);
     let place = |number: usize| form.on(rect, figure.points[number], displaced(number));
+    let reach = form.reach(rect);
+    let glow = |number: usize| (displaced(number).abs() / reach).min(1.0).sqrt() * 0.85;
     if form == Form::Line {
         let points: Vec<Pos2> = (0..figure.points.len()).map(place).collect();
-        let glow = |number: usize| (displaced(number).abs() / form.reach(rect)).min(1.0).sqrt() * 0.85;
         if figure.thickness == 0.0 {
             let rest = |x: f64| form.on(rect, Point { x, y: 0.0 }, 0.0);
             painter.line_segment([rest(0.0), rest(1.0)], Stroke::new(1.0, palette.line));
@@ -43,7 +44,7 @@ pub(crate) fn paint(
             painter.add(ribbon(&points, figure.thickness * rect.height().min(rect.width()), glow, figure, palette));
         }
     } else {
-        surface(painter, rect, figure, &displaced, palette);
+        surface(painter, rect, figure, &displaced, glow, palette);
     }
     if let Some(strike) = strike {
         let nearest = (0..figure.points.len()).min_by(|a, b| {
@@ -103,9 +104,15 @@ fn light(along: [f32; 3], across: [f32; 3]) -> [f32; 2] {
     [AMBIENT + (1.0 - AMBIENT) * 1.25 * dot(normal, LIGHT).max(0.0), GLOSS * highlight]
 }
 
-fn surface(painter: &Painter, rect: Rect, figure: &Figure, displaced: &impl Fn(usize) -> f32, palette: &Palette) {
+fn surface(
+    painter: &Painter,
+    rect: Rect,
+    figure: &Figure,
+    displaced: &impl Fn(usize) -> f32,
+    glow: impl Fn(usize) -> f32,
+    palette: &Palette,
+) {
     let (form, [columns, rows]) = (figure.form, figure.grid);
-    let reach = form.reach(rect);
     let places: Vec<[f32; 3]> =
         (0..columns * rows).map(|number| form.in_space(figure.points[number], displaced(number))).collect();
     let is_closed = !matches!(form, Form::Plate { .. });
@@ -123,9 +130,8 @@ fn surface(painter: &Painter, rect: Rect, figure: &Figure, displaced: &impl Fn(u
             between(row * columns + left, row * columns + right),
             between(above * columns + column, below * columns + column),
         );
-        let glow = (displaced(number).abs() / reach).min(1.0).sqrt() * 0.85;
         let pos = form.on(rect, figure.points[number], displaced(number));
-        Vertex { pos, uv: WHITE_UV, color: lit(figure.tint, light, highlight, glow, palette) }
+        Vertex { pos, uv: WHITE_UV, color: lit(figure.tint, light, highlight, glow(number), palette) }
     };
     let mut mesh = Mesh { vertices: (0..columns * rows).map(vertex).collect(), ..Mesh::default() };
     // The farthest patches are painted first.

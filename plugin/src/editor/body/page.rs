@@ -2,7 +2,7 @@
 
 use super::edit::BodyEdit;
 use super::numbers::{Number, Part, written};
-use super::origin::{Origin, model_name};
+use super::origin::{Origin, OriginShown, model_name};
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::Audition;
@@ -11,13 +11,10 @@ use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::{line, paragraph};
 use crate::link::Link;
-use crate::loaded::Loaded;
 use egui::{Align2, DragValue, Id, Rect, Response, Role, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, vec2};
 use sprung::preset::LINK_KINDS;
 use sprung::sound::bodies::{MATERIALS, Model};
 use sprung::units::number_in_unit;
-use std::sync::Arc;
-use std::time::Duration;
 
 /// Width of the part with model and material.
 const SIDE: f32 = 188.0;
@@ -36,8 +33,7 @@ const TABLE: &str = "a table of modes";
 #[derive(Default)]
 pub(crate) struct BodyPage {
     part: Part,
-    /// The loaded sound, and the body from which its modes are made.
-    read: Option<(Arc<Loaded>, Origin)>,
+    read: OriginShown,
     edit: Option<BodyEdit>,
     audition: Audition,
 }
@@ -72,9 +68,7 @@ impl BodyPage {
         }
         let (now, link) = (ui.input(|input| input.time), controls.params.link());
         self.audition.follow_time(now, link);
-        if let Some(rest) = self.audition.rest(now) {
-            ui.ctx().request_repaint_after(Duration::from_secs_f64(rest));
-        }
+        self.audition.request_end(ui);
         let origin = self.origin(shown);
         if origin.pair().is_none() && self.part == Part::Joint || origin == Origin::Table {
             self.part = Part::First;
@@ -83,9 +77,7 @@ impl BodyPage {
         let mut message = None;
         if let Some((changed, what)) = self.side(ui, side, &origin, controls) {
             self.leave(controls);
-            let mut edit = BodyEdit::begin(&origin, shown.loaded(), controls);
-            edit.change(changed, what);
-            message = edit.end(controls).err();
+            message = BodyEdit::make(&origin, changed, what, shown.loaded(), controls).err();
             self.audition.strike(
                 shown.guide().home,
                 crate::editor::keyboard::audition::VELOCITY,
@@ -103,14 +95,7 @@ impl BodyPage {
         if let Some(edit) = &self.edit {
             return edit.origin().clone();
         }
-        match &self.read {
-            Some((loaded, origin)) if Arc::ptr_eq(loaded, shown.loaded()) => origin.clone(),
-            _ => {
-                let origin = Origin::of(&shown.patch().modes);
-                self.read = Some((shown.loaded().clone(), origin.clone()));
-                origin
-            }
-        }
+        self.read.get(shown)
     }
 
     /// Shows which body is edited, its model and its material. Returns the changed body and the name of the undo step.

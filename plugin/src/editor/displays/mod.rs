@@ -17,7 +17,6 @@ use egui::{Align2, Rect, Ui, pos2};
 use phase::Phase;
 use ringing::Ringing;
 use scope::SHOWN;
-use std::time::Duration;
 
 #[derive(Clone, Copy, PartialEq, Default)]
 enum Picture {
@@ -102,9 +101,7 @@ impl Displays {
                 "each mode’s level".to_owned()
             }
         };
-        if let Some(rest) = self.audition.rest(now) {
-            ui.ctx().request_repaint_after(Duration::from_secs_f64(rest));
-        }
+        self.audition.request_end(ui);
         if caption.width() >= 48.0 {
             line(ui.painter(), caption, Align2::RIGHT_CENTER, &text, SMALL, palette.muted);
         }

@@ -1,6 +1,8 @@
 //! A key that the window plays by itself, so that the user hears a change or a chosen sound.
 
 use crate::link::{Link, Touch};
+use egui::Ui;
+use std::time::Duration;
 
 /// How long a key is held when a sound is tried, in seconds.
 const HELD: f64 = 0.7;
@@ -57,8 +59,15 @@ impl Audition {
         }
     }
 
+    /// Asks for a pass at the time at which the key is to be released.
+    pub(crate) fn request_end(&self, ui: &Ui) {
+        if let Some(rest) = self.rest(ui.input(|input| input.time)) {
+            ui.ctx().request_repaint_after(Duration::from_secs_f64(rest));
+        }
+    }
+
     /// Seconds until the key is released; none if no key is held.
-    pub(crate) fn rest(&self, now: f64) -> Option<f64> {
+    fn rest(&self, now: f64) -> Option<f64> {
         self.key.map(|_| (self.end - now).max(0.0))
     }
 }

@@ -15,7 +15,6 @@ use crate::editor::widgets::text::line;
 use crate::link::Link;
 use egui::{Align2, Rect, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, vec2};
 use sprung::params::{PARAMS, Param, ParamInfo};
-use std::time::Duration;
 
 /// The smallest height of a page with titles and tiles: 330 for the tiles of bodies and materials, and the rest for knobs and gaps.
 const TALL: f32 = 456.0;
@@ -87,9 +86,7 @@ impl PlayPage {
             message = changed.and_then(Result::err);
         }
         stage::show_spaces(ui, inner.with_min_y(inner.bottom() - 22.0), controls);
-        if let Some(rest) = self.audition.rest(now) {
-            ui.ctx().request_repaint_after(Duration::from_secs_f64(rest));
-        }
+        self.audition.request_end(ui);
         knobs(ui, rect.with_min_y(stage.bottom() + GAP), title, shown, controls);
         message
     }

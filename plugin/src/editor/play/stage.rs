@@ -1,7 +1,7 @@
 //! The floor that the body stands on, which is its space, and the place of the body.
 
 use crate::editor::controls::Controls;
-use crate::editor::theme::{Palette, SMALL};
+use crate::editor::theme::SMALL;
 use crate::editor::widgets::buttons::tab;
 use crate::editor::widgets::text::{line, width};
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
@@ -45,18 +45,25 @@ pub(super) fn paint_floor(painter: &Painter, stage: Rect, middle: Rect, controls
     let line = Stroke::new(1.2, palette.line.lerp_to_gamma(palette.accent, 0.15 + 0.6 * mix));
     let centre = pos2(middle.center().x, stage.top() + 0.84 * stage.height());
     match space as usize {
-        1 => (1..=5).for_each(|ring| ellipse(&painter, centre, ring as f32 * 0.085 * stage.width(), line)),
+        1 => (1..=5).for_each(|ring| {
+            let ring = circle(centre, ring as f32 * 0.085 * stage.width(), 0.26, 48);
+            painter.add(Shape::closed_line(ring, line));
+        }),
         2 => (0..3).for_each(|coil| {
             spring(&painter, [left, right], far + (stage.bottom() - far) * (0.2 + 0.22 * coil as f32), line)
         }),
         3 => room(&painter, stage, [left, right], far, line),
-        _ => shadow(&painter, centre, 0.14 * stage.width(), palette),
+        _ => {
+            let shadow = circle(centre, 0.14 * stage.width(), 0.22, 32);
+            painter.add(Shape::convex_polygon(shadow, palette.ground.gamma_multiply(0.7), Stroke::NONE));
+        }
     }
 }
 
-fn ellipse(painter: &Painter, centre: Pos2, radius: f32, stroke: Stroke) {
-    let point = |step: usize| centre + vec2(1.0, 0.26) * (radius * egui::Vec2::angled(TAU * step as f32 / 48.0));
-    painter.add(Shape::closed_line((0..48).map(point).collect(), stroke));
+/// The corners of a circle that lies on the floor, as flat as it is seen.
+fn circle(centre: Pos2, radius: f32, flatness: f32, corners: usize) -> Vec<Pos2> {
+    let round = |corner: usize| egui::Vec2::angled(TAU * corner as f32 / corners as f32);
+    (0..corners).map(|corner| centre + vec2(1.0, flatness) * (radius * round(corner))).collect()
 }
 
 fn spring(painter: &Painter, [left, right]: [f32; 2], y: f32, stroke: Stroke) {
@@ -75,12 +82,6 @@ fn room(painter: &Painter, stage: Rect, [left, right]: [f32; 2], far: f32, strok
         let from = pos2(left + (right - left) * share, far);
         painter.line_segment([from, pos2(stage.left() + stage.width() * share, stage.bottom())], stroke);
     }
-}
-
-fn shadow(painter: &Painter, centre: Pos2, radius: f32, palette: &Palette) {
-    let point = |step: usize| centre + vec2(1.0, 0.22) * (radius * egui::Vec2::angled(TAU * step as f32 / 32.0));
-    let fill = palette.ground.gamma_multiply(0.7);
-    painter.add(Shape::convex_polygon((0..32).map(point).collect(), fill, Stroke::NONE));
 }
 
 /// Shows what the body can stand on.

@@ -3,16 +3,14 @@
 use crate::editor::body::edit::BodyEdit;
 use crate::editor::body::face;
 use crate::editor::body::figure::{Figure, tint};
-use crate::editor::body::origin::{Origin, model_name};
+use crate::editor::body::origin::{Origin, OriginShown, model_name};
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{GAP, RADIUS, SMALL};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::line;
-use crate::loaded::Loaded;
 use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 use sprung::sound::bodies::{Body, MATERIALS, Model};
-use std::sync::Arc;
 
 /// Models with tiles, and their names there. All others are in the list below.
 const TILES: [(&str, &str); 9] = [
@@ -36,8 +34,7 @@ const COLUMNS: [usize; 2] = [3, 5];
 /// The state of the column.
 #[derive(Default)]
 pub(super) struct Things {
-    /// The loaded sound, and the body from which its modes are made.
-    read: Option<(Arc<Loaded>, Origin)>,
+    read: OriginShown,
     figures: Vec<Figure>,
 }
 
@@ -51,11 +48,7 @@ impl Things {
         shown: &Shown,
         controls: &mut Controls,
     ) -> Option<Result<(), String>> {
-        let origin = match &self.read {
-            Some((loaded, origin)) if Arc::ptr_eq(loaded, shown.loaded()) => origin.clone(),
-            _ => Origin::of(&shown.patch().modes),
-        };
-        self.read = Some((shown.loaded().clone(), origin.clone()));
+        let origin = self.read.get(shown);
         if self.figures.is_empty() {
             let model = |id| Model::find(id).cloned().unwrap_or(Model::String);
             self.figures = TILES.iter().map(|(id, _)| Figure::small(&Body::new(model(id)))).collect();
@@ -67,9 +60,7 @@ impl Things {
             let below = rect.with_min_y(rect.top() + 28.0).with_max_y(rect.top() + 50.0);
             model.or_else(|| material_field(ui, below, &origin, controls))?
         };
-        let mut edit = BodyEdit::begin(&origin, shown.loaded(), controls);
-        edit.change(changed, what);
-        Some(edit.end(controls))
+        Some(BodyEdit::make(&origin, changed, what, shown.loaded(), controls))
     }
 
     fn tiles(&self, ui: &Ui, rect: Rect, origin: &Origin, controls: &mut Controls) -> Option<(Origin, String)> {
@@ -89,7 +80,8 @@ impl Things {
         for (place, ((id, name), figure)) in TILES.iter().zip(&self.figures).enumerate() {
             let offset = vec2((place % columns) as f32, (place / columns) as f32) * (size + vec2(4.0, 4.0));
             let tile = Rect::from_min_size(tiles.min + offset, size);
-            let (response, is_now) = (choice(ui, tile, ("thing", name), now == Some(id)), now == Some(id));
+            let is_now = now == Some(id);
+            let response = choice(ui, tile, ("thing", name), is_now);
             let face = if is_now || response.hovered() { palette.raised } else { palette.ground };
             ui.painter().rect(tile, RADIUS, face, edge(&response, is_now, controls), StrokeKind::Inside);
             let picture = tile.with_max_y(tile.bottom() - 15.0).shrink2(vec2(7.0, 4.0));
