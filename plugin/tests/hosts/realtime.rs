@@ -107,7 +107,7 @@ fn play_under_watch(parent: Option<Parent>) -> ExitCode {
         let start = Instant::now();
         let mut round = 0;
         while played.load(Ordering::Relaxed) < BLOCKS || start.elapsed() < Duration::from_secs(3) {
-            if seen() || start.elapsed() > Duration::from_secs(60) {
+            if seen() || start.elapsed() > Duration::from_secs(300) {
                 break;
             }
             instance.run_callbacks();
