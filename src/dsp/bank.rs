@@ -1,6 +1,6 @@
 //! The mode bank of a voice, with exact tuning or with the original formulas.
 
-use super::exciter::{Bow, Drive};
+use super::exciter::{Drive, Player};
 use super::mode_bank::exchange::{BANDS, Band, Exchange};
 use super::mode_bank::{ExcitationRows, MAX_MODES, ModeRows};
 use super::{ClassicBank, ModeBank};
@@ -72,10 +72,10 @@ impl Bank {
         either!(self, bank => bank.set_excitation_gains(gains));
     }
 
-    /// See [`ModeBank::set_bow_weight`]. Does nothing with the original formulas, which have no bow.
-    pub(crate) fn set_bow_weight(&mut self, m: usize, weight: f32) {
+    /// See [`ModeBank::set_contact`]. Does nothing with the original formulas, which no player can drive.
+    pub(crate) fn set_contact(&mut self, m: usize, take: f32, give: f32) {
         if let Self::Exact(bank) = self {
-            bank.set_bow_weight(m, weight);
+            bank.set_contact(m, take, give);
         }
     }
 
@@ -109,10 +109,15 @@ impl Bank {
         either!(self, bank => bank.render(drive, frames))
     }
 
-    /// See [`ModeBank::render_bowed`]. With the original formulas, the bow is ignored.
-    pub(crate) fn render_bowed(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
+    /// See [`ModeBank::render_played`]. With the original formulas, the player is ignored.
+    pub(crate) fn render_played(
+        &mut self,
+        drive: Option<&Drive>,
+        player: Option<Player>,
+        frames: usize,
+    ) -> [&[f32]; 2] {
         match self {
-            Self::Exact(bank) => bank.render_bowed(drive, bow, frames),
+            Self::Exact(bank) => bank.render_played(drive, player, frames),
             Self::Classic(bank) => bank.render(drive, frames),
         }
     }

@@ -6,7 +6,7 @@ pub(crate) use cascade::Climb;
 
 use super::CONTROL_FRAMES;
 use super::bank::{Bank, Recurrence};
-use super::exciter::{Bow, Drive};
+use super::exciter::{Drive, Player};
 use super::mode_bank::tail::Energies;
 use super::mode_bank::{ExcitationRows, MAX_MODES, ModeRows};
 
@@ -175,25 +175,23 @@ impl Cells {
         self.iter_mut().for_each(|cell| cell.bank.jump_to(ratio));
     }
 
-    /// Sets the weights of the first [`MAX_MODES`] modes under a bow, scaled so that their squares add up to 1. Modes after
-    /// these are not bowed. `weight` gives the weight of a mode by its number, before scaling.
-    pub(crate) fn set_bow_weights(&mut self, weight: impl Fn(usize) -> f64) {
+    /// Sets what the first [`MAX_MODES`] modes take of a player's force and what they give of their displacement. Modes after
+    /// these are not played. `contact` tells both of a mode by its number.
+    pub(crate) fn set_contacts(&mut self, contact: impl Fn(usize) -> [f32; 2]) {
         let Some(Cell { bank, .. }) = self.iter_mut().next() else { return };
-        let mut weights = [0.0; MAX_MODES];
-        let weights = &mut weights[..bank.len()];
-        weights.iter_mut().enumerate().for_each(|(m, place)| *place = weight(m));
-        let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
-        let scale = if squares > 0.0 { 1.0 / libm::sqrt(squares) } else { 0.0 };
-        weights.iter().enumerate().for_each(|(m, weight)| bank.set_bow_weight(m, (weight * scale) as f32));
+        for m in 0..bank.len() {
+            let [take, give] = contact(m);
+            bank.set_contact(m, take, give);
+        }
     }
 
-    /// As [`super::ModeBank::render_bowed`]. The drive acts on all cells, the bow only on the first.
-    pub(crate) fn render(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
+    /// As [`super::ModeBank::render_played`]. The drive acts on all cells, the player only on the first.
+    pub(crate) fn render(&mut self, drive: Option<&Drive>, player: Option<Player>, frames: usize) -> [&[f32]; 2] {
         let Self { cells, sum, .. } = self;
         let frames = frames.min(CONTROL_FRAMES);
         let (first, rest) = cells.split_at_mut(1);
         let mut rest = rest.iter_mut().map_while(Option::as_deref_mut).peekable();
-        let first = first.iter_mut().flatten().map(|cell| cell.bank.render_bowed(drive, bow, frames)).next();
+        let first = first[0].as_deref_mut().map(|cell| cell.bank.render_played(drive, player, frames));
         let Some(first) = first else { return sum.each_ref().map(|side| &side[..frames]) };
         if rest.peek().is_none() {
             return first;

@@ -42,6 +42,13 @@ pub(crate) struct Controls {
     /// Speed of the bow, at least 0, and the pressure of the bow, 0–1.
     pub(crate) bow_speed: f32,
     pub(crate) bow_force: f32,
+    /// Pressure of the breath, 1 closes a reed; opening of the valve, 0–1; semitones of its tension; turbulence, 0–1.
+    pub(crate) breath_pressure: f32,
+    pub(crate) breath_opening: f64,
+    pub(crate) breath_lip: f64,
+    pub(crate) breath_noise: f32,
+    /// Amplitude ratio of the noise that is held.
+    pub(crate) noise_gain: f32,
     /// Amplitude ratio of the incoming sound.
     pub(crate) input_gain: f32,
     /// Amplitude ratio.
@@ -80,6 +87,11 @@ impl Controls {
             bend_range: value(Param::BendRange),
             bow_speed: exciter_gain(value(Param::BowLevel).into()) as f32,
             bow_force: value(Param::BowForce) * 0.01,
+            breath_pressure: value(Param::BreathPressure) * 0.01,
+            breath_opening: f64::from(value(Param::BreathOpening)) * 0.01,
+            breath_lip: value(Param::BreathLip).into(),
+            breath_noise: value(Param::BreathNoise) * 0.01,
+            noise_gain: exciter_gain(value(Param::NoiseHeld).into()) as f32,
             input_gain: exciter_gain(value(Param::InputLevel).into()) as f32,
             gain_left,
             gain_right,
@@ -111,6 +123,11 @@ impl Controls {
             Param::BendRange => self.bend_range = value,
             Param::BowLevel => self.bow_speed = exciter_gain(wide) as f32,
             Param::BowForce => self.bow_force = value * 0.01,
+            Param::BreathPressure => self.breath_pressure = value * 0.01,
+            Param::BreathOpening => self.breath_opening = wide * 0.01,
+            Param::BreathLip => self.breath_lip = wide,
+            Param::BreathNoise => self.breath_noise = value * 0.01,
+            Param::NoiseHeld => self.noise_gain = exciter_gain(wide) as f32,
             Param::InputLevel => self.input_gain = exciter_gain(wide) as f32,
             Param::Gain => self.gain_db = value,
             Param::Pan => self.pan = value,

@@ -52,6 +52,14 @@ choices! {
         Contact "contact",
     }
 
+    /// What breath goes through into a tube.
+    Valve {
+        /// A reed, which the breath closes.
+        Reed "reed",
+        /// Lips, which the breath opens.
+        Lips "lips",
+    }
+
     /// How a noise burst decays.
     NoiseDecay {
         /// With the square of the remaining noise time.
@@ -227,6 +235,7 @@ mod tests {
     #[test]
     fn every_choice_is_its_value_and_its_name() {
         check::<MalletPulse>();
+        check::<Valve>();
         check::<NoiseDecay>();
         check::<NoteOff>();
         check::<Coefficients>();
@@ -243,6 +252,7 @@ mod tests {
         check::<NoteValue>();
         let lists = [
             MalletPulse::NAMES,
+            Valve::NAMES,
             NoiseDecay::NAMES,
             NoteOff::NAMES,
             Coefficients::NAMES,

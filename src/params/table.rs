@@ -77,6 +77,8 @@ table! {
             "How many bursts follow each other, as in a clap or a flam; together they have the energy of one.";
         NoiseSpacing "noise_spacing" "Noise spacing", Seconds 0.002..0.5 = 0.012, Logarithmic, NextNote,
             "Time from each of these bursts to the next, which cuts it off.";
+        NoiseHeld "noise_held" "Noise held", Decibels -60.0..24.0 = -60.0, Linear, Smoothed(20),
+            "Noise that goes on while the key is held, such as breath or bow hair, of the same colour; at -60 dB there is none.";
         NoiseVelocity "noise_velocity" "Noise velocity", Percent -100.0..100.0 = 0.0, Linear, NextNote,
             "Added to how much velocity sets the force, for the noise alone.";
     }
@@ -91,6 +93,24 @@ table! {
             "How gradually friction falls as the bow slips: low is sharp, high is smooth.";
         BowVelocity "bow_velocity" "Bow velocity", Percent -100.0..100.0 = 0.0, Linear, NextNote,
             "Added to how much velocity sets the speed, for the bow alone.";
+    }
+    "Breath" {
+        BreathLevel "breath_level" "Breath level", Decibels -60.0..24.0 = -60.0, Linear, NextNote,
+            "Loudness of a tube that is blown while the key is held, its lowest 64 modes; at -60 dB there is no breath.";
+        BreathPressure "breath_pressure" "Breath pressure", Percent 0.0..200.0 = 60.0, Linear, Smoothed(20),
+            "Pressure in the mouth: at 100 % it closes a reed; below some 40 % nothing speaks, and more is louder and brighter.";
+        BreathValve "breath_valve" "Breath valve", Choice[Valve] 0.0..1.0 = 0.0, Linear, NextNote,
+            "What the breath goes through: a reed, which it closes, or lips, which it opens.";
+        BreathOpening "breath_opening" "Breath opening", Percent 0.0..100.0 = 50.0, Linear, Smoothed(20),
+            "How far reed or lips stand open at rest: more air speaks sooner and is brighter.";
+        BreathLip "breath_lip" "Breath lip", Semitones -12.0..12.0 = 0.0, Linear, Smoothed(20),
+            "Tension of reed or lips: a little bends the pitch and the colour, much makes the note crack.";
+        BreathNoise "breath_noise" "Breath noise", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20),
+            "Turbulence in the valve: wind that the tube colours.";
+        BreathAttack "breath_attack" "Breath attack", Seconds 0.0..2.0 = 0.03, Linear, NextNote,
+            "Time until the breath has its pressure.";
+        BreathTongue "breath_tongue" "Breath tongue", Percent 0.0..100.0 = 25.0, Linear, NextNote,
+            "How much more pressure the tongue lets go at the start, for a twentieth of a second.";
     }
     "Input" {
         InputLevel "input_level" "Input level", Decibels -60.0..24.0 = -60.0, Linear, Smoothed(20),

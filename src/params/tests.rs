@@ -9,8 +9,10 @@ fn ids_are_pinned() {
     let ids: Vec<_> = PARAMS.iter().map(|info| info.id).collect();
     let pinned = "mallet_level mallet_pulse mallet_hardness mallet_mass mallet_speed mallet_key mallet_velocity \
         pluck_level pluck_hardness pluck_position pluck_width pluck_velocity \
-        noise_level noise_reach noise_time noise_decay noise_attack noise_colour noise_hits noise_spacing noise_velocity \
-        bow_level bow_force bow_position bow_slip bow_velocity input_level \
+        noise_level noise_reach noise_time noise_decay noise_attack noise_colour noise_hits noise_spacing noise_held noise_velocity \
+        bow_level bow_force bow_position bow_slip bow_velocity \
+        breath_level breath_pressure breath_valve breath_opening breath_lip breath_noise breath_attack breath_tongue \
+        input_level \
         velocity vary_position vary_hardness vary_modes \
         decay release damper note_off decay_tilt tilt stretch width coefficients \
         tension bloom bloom_time touch touch_position \

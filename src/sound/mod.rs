@@ -12,6 +12,7 @@
 //! The parameters of a kit of several sounds start at the defaults: each sound's value is as far from its own value, in
 //! knob travel, as the kit's value is from the default.
 
+pub(crate) mod blown;
 pub mod bodies;
 mod collector;
 pub(crate) mod contact;
@@ -38,14 +39,17 @@ use crate::patch::Patch;
 pub struct Sound {
     patch: Patch,
     tuning: Option<Tuning>,
+    correction: Option<blown::Correction>,
 }
 
 impl Sound {
     /// The sound of a patch, in the tuning of the whole instrument. Allocates. If the patch has a table of modes for each
-    /// key, these are made here, which can take a second; clones of the patch share them.
+    /// key, these are made here, which can take a second; clones of the patch share them. If it is blown, it is tuned here, which
+    /// takes about a tenth of a second.
     pub fn new(patch: Patch) -> Self {
         patch.modes.make_tables();
-        Self { patch, tuning: None }
+        let correction = blown::Correction::of(&patch);
+        Self { patch, tuning: None, correction }
     }
 
     /// The sound with a tuning of its own, which replaces that of the instrument; none for the instrument's.
@@ -58,6 +62,11 @@ impl Sound {
     /// The patch of the sound.
     pub fn patch(&self) -> &Patch {
         &self.patch
+    }
+
+    /// How its tube is tuned, if it is blown.
+    pub(crate) fn correction(&self) -> Option<&blown::Correction> {
+        self.correction.as_ref()
     }
 
     /// The sound's own tuning, if it has one.

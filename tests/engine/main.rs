@@ -8,6 +8,7 @@ mod blocks;
 mod bodies;
 mod body_reference;
 mod body_rendered;
+mod breath;
 mod clicks;
 mod controllers;
 mod coupled_reference;

@@ -303,8 +303,8 @@ fn what_a_host_moves_of_a_sounding_note_slides_all_the_way() {
     assert_near(pitch(&turned, later(Route1, 0.0625)), 2.0, 1e-4);
 }
 
-/// A patch in four forms: every parameter is audible in at least one of them, and many sources are routed to the pitch. The forms
-/// are excited by an impulse, by a mallet's contact, by a pluck, and by noise and a bow.
+/// A patch in five forms: every parameter is audible in at least one of them, and many sources are routed to the pitch. The forms
+/// are excited by an impulse, by a mallet's contact, by a pluck, by noise and a bow, and by breath.
 fn busy(form: usize) -> Patch {
     let pitch = [
         Source::Lfo1,
@@ -334,6 +334,8 @@ fn busy(form: usize) -> Patch {
         (NoiseReach, if form == 3 { 80.0 } else { 0.0 }),
         (NoiseHits, 2.0),
         (BowLevel, if form == 3 { -12.0 } else { -60.0 }),
+        (BreathLevel, if form == 4 { -12.0 } else { -60.0 }),
+        (BreathNoise, 5.0),
         (Velocity, 50.0),
         (Sweep, 12.0),
         (SweepTime, 0.2),
@@ -372,7 +374,7 @@ fn every_quantity_can_be_moved_and_is_heard() {
     // Without audio input, its level is not audible.
     let heard = PARAMS.iter().filter(|info| info.is_modulatable() && ![Route16, InputLevel].contains(&info.param));
     let deaf = heard.filter(|info| {
-        (0..4).all(|form| {
+        (0..5).all(|form| {
             let plain = busy(form).with(Macro1, 100.0).with(Route16, -25.0);
             let mut moved = plain.clone();
             let route =

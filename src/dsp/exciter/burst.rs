@@ -83,6 +83,36 @@ impl BurstSetup {
     }
 }
 
+/// A filter of noise: an over-damped mass that follows it. Real-time safe.
+#[derive(Clone, Copy, Debug)]
+pub struct Colour {
+    colour: f64,
+    /// Fraction of its distance from the noise that the mass moves in a frame, and its position.
+    follow: f32,
+    mass: f32,
+}
+
+impl Colour {
+    /// No filter.
+    pub const WHITE: Self = Self { colour: 0.0, follow: 1.0, mass: 0.0 };
+
+    /// The filter of a [`BurstSetup::colour`].
+    pub fn new(colour: f64, sample_rate: f64) -> Self {
+        let share = if colour < 0.0 { 1.0 + colour } else { colour };
+        let corner = LOWEST_CORNER * pow(HIGHEST_CORNER / LOWEST_CORNER, share);
+        Self { colour, follow: (1.0 - exp(-TAU * corner / sample_rate)) as f32, mass: 0.0 }
+    }
+
+    /// The next frame of some noise.
+    pub fn filter(&mut self, noise: f32) -> f32 {
+        if self.colour == 0.0 {
+            return noise;
+        }
+        self.mass += self.follow * (noise - self.mass);
+        if self.colour < 0.0 { self.mass } else { noise - self.mass }
+    }
+}
+
 /// A burst in progress. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Burst {
@@ -92,30 +122,24 @@ pub(super) struct Burst {
     /// Factor of the exponential envelope per frame, and its present value.
     keep: f32,
     level: f32,
-    /// Fraction of its distance from the noise that the over-damped mass moves in a frame, and its position. Not used if the
-    /// noise is white.
-    follow: f32,
-    mass: f32,
+    colour: Colour,
 }
 
 impl Burst {
     pub(super) const NONE: Burst =
-        Burst { setup: BurstSetup::NONE, frames: 0, scale: 0.0, keep: 1.0, level: 1.0, follow: 1.0, mass: 0.0 };
+        Burst { setup: BurstSetup::NONE, frames: 0, scale: 0.0, keep: 1.0, level: 1.0, colour: Colour::WHITE };
 
     pub(super) fn new(setup: BurstSetup, sample_rate: f64) -> Self {
         if setup.force <= 0.0 || setup.frames == 0 {
             return Self::NONE;
         }
         let spaced = (setup.hits.max(1) - 1).saturating_mul(setup.spacing);
-        let share = if setup.colour < 0.0 { 1.0 + setup.colour } else { setup.colour };
-        let corner = LOWEST_CORNER * pow(HIGHEST_CORNER / LOWEST_CORNER, share);
         Self {
             frames: spaced.saturating_add(setup.attack).saturating_add(setup.frames),
             scale: (f64::from(setup.force) / sqrt(setup.energy())) as f32,
             keep: exp(-setup.rate()) as f32,
             level: 1.0,
-            follow: (1.0 - exp(-TAU * corner / sample_rate)) as f32,
-            mass: 0.0,
+            colour: Colour::new(setup.colour, sample_rate),
             setup,
         }
     }
@@ -128,17 +152,9 @@ impl Burst {
     pub(super) fn add_to(&mut self, frame: u32, force: &mut [f32]) {
         let left = self.frames.saturating_sub(frame) as usize;
         for (frame, force) in (frame..).zip(force.iter_mut().take(left)) {
-            let noise = self.coloured(uniform(self.setup.key, u64::from(frame)));
+            let noise = self.colour.filter(uniform(self.setup.key, u64::from(frame)));
             *force += noise * self.envelope(frame);
         }
-    }
-
-    fn coloured(&mut self, noise: f32) -> f32 {
-        if self.setup.colour == 0.0 {
-            return noise;
-        }
-        self.mass += self.follow * (noise - self.mass);
-        if self.setup.colour < 0.0 { self.mass } else { noise - self.mass }
     }
 
     /// The envelope at a frame, including the scale.

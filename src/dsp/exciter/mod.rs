@@ -1,22 +1,23 @@
-//! The excitation of the masses: a mallet's force pulse, a pluck, bursts of noise and a bow, in any combination.
+//! The excitation of the masses: a mallet's force pulse, a pluck, noise, and a bow or a breath, in any combination.
 //!
 //! A [`Stroke`] has the areas and lengths of what pushes and what pulls, and a burst of noise. Three forces go to the
 //! bank, and each mode has a gain for each of them. An exciter that is off makes no force, so nothing is computed for
 //! it, and the kernel reads only the forces that are there: one that acts on `y`, one of either kind with noise, or all
 //! three. All kinds of movement share the last form, which is seldom needed for longer than a contact
-//! (`a_force_alone_gives_the_bits_of_the_form_that_reads_all`). The levels of mallet and pluck are in their forces and
-//! the level of noise is in its gains, because presets with one exciter had to keep their bits. Incoming sound is added
-//! to what pushes.
+//! (`a_force_alone_gives_the_bits_of_the_form_that_reads_all`). Levels are in the forces. Incoming sound is added to
+//! what pushes, and noise that is held to the bursts.
 
 mod bow;
 mod burst;
 mod pulse;
+mod valve;
 
 use super::CONTROL_FRAMES;
 pub use bow::Bow;
 use burst::Burst;
-pub use burst::{BurstSetup, Decay};
+pub use burst::{BurstSetup, Colour, Decay};
 use pulse::Pulse;
+pub use valve::{Breath, Valve, ValveLaw};
 
 /// The forces of up to [`CONTROL_FRAMES`] frames.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +34,26 @@ impl Drive {
     /// No force.
     pub const NONE: Drive =
         Drive { push: [0.0; CONTROL_FRAMES], pull: [0.0; CONTROL_FRAMES], noise: [0.0; CONTROL_FRAMES] };
+}
+
+/// What drives a body for as long as its note is held, by a force that depends on how the body moves.
+#[derive(Debug)]
+pub enum Player<'a> {
+    /// A bow.
+    Bow(&'a Bow),
+    /// Breath through a valve.
+    Breath(&'a mut Valve),
+}
+
+impl Player<'_> {
+    /// The force in the frame that is `frame` frames after the next one. `motion` is the sum of the modes at the point of play: a
+    /// speed for a bow, a pressure for a valve.
+    pub(crate) fn force_on(&mut self, frame: usize, motion: f32) -> f32 {
+        match self {
+            Self::Bow(bow) => bow.force_on(frame, motion),
+            Self::Breath(valve) => valve.flow(frame, motion),
+        }
+    }
 }
 
 /// The parameters of a strike.

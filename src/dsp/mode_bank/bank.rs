@@ -1,6 +1,6 @@
 //! The public interface of the bank: load modes, excite them, change their pitch and decay, render.
 
-use super::friction::Bowed;
+use super::played::Played;
 use super::ring::Ring;
 use super::rows::{Form, Modes, Moving, Output, Row, State, Wide};
 use super::step::Step;
@@ -9,7 +9,7 @@ use super::tuning::{Aim, ChordLoss, Displace, Settle, Tune, Tuning, UNIT};
 use super::{ExcitationRows, LEAST_LN_RADIUS, MAX_MODES, MOST_LN_RADIUS, ModeRows};
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::coefficients::{LN_MINUS_60_DB, angle_from_frequency};
-use crate::dsp::exciter::{Bow, Drive};
+use crate::dsp::exciter::{Drive, Player};
 use crate::dsp::simd::Instructions;
 use crate::dsp::simd::vector::LANES;
 
@@ -130,8 +130,8 @@ impl ModeBank {
         [self.modes.left_step, self.modes.right_step] = [Row::ZERO; 2];
         for m in self.len..MAX_MODES {
             // Clears the modes after the last, which fill up lanes and tables and must stay at rest.
-            let Modes { push_x, push_y, pull_x, pull_y, noise_x, noise, bow, .. } = &mut self.modes;
-            [push_x, push_y, pull_x, pull_y, noise_x, noise, bow].into_iter().for_each(|row| row.0[m] = 0.0);
+            let Modes { push_x, push_y, pull_x, pull_y, noise_x, noise, take, give, .. } = &mut self.modes;
+            [push_x, push_y, pull_x, pull_y, noise_x, noise, take, give].into_iter().for_each(|row| row.0[m] = 0.0);
             // Otherwise every change of damping would multiply their coefficients by the last factor of an earlier mode, until
             // they are infinite and the product with a state of 0 is NaN.
             self.tuning.shrink.0[m] = 0.0;
@@ -193,9 +193,9 @@ impl ModeBank {
         self.live = self.live.max((m + 1).next_multiple_of(LANES).min(self.len));
     }
 
-    /// Sets the weight of mode `m` at the point of the bow. The squares of all weights must add up to 1.
-    pub(crate) fn set_bow_weight(&mut self, m: usize, weight: f32) {
-        self.modes.bow.0[m] = weight;
+    /// Sets what mode `m` takes of a player's force, and what it gives of its displacement: see `played` for both.
+    pub(crate) fn set_contact(&mut self, m: usize, take: f32, give: f32) {
+        (self.modes.take.0[m], self.modes.give.0[m]) = (take, give);
     }
 
     /// Changes the T60 of mode `m` to `t60` seconds, at once. Follow with [`ModeBank::sweep_to`].
@@ -319,10 +319,10 @@ impl ModeBank {
         self.instructions.run(Step { form, modes, state, drive, out });
     }
 
-    fn step_bowed(&mut self, drive: &Drive, bow: &Bow, frames: usize) {
+    fn step_played(&mut self, drive: &Drive, player: &mut Player, frames: usize) {
         let form = self.form(true, frames);
         let (modes, state, out) = (&self.modes, &mut self.states[self.current], &mut self.output);
-        self.instructions.run(Bowed { form, modes, state, drive, bow, out });
+        self.instructions.run(Played { form, modes, state, drive, player, out });
     }
 
     /// Makes the tables at the start of a tick, if they will save time.
@@ -355,14 +355,20 @@ impl ModeBank {
     /// Renders the next frames, left and right. `frames` must not exceed those left until the next control tick, as
     /// given to [`ModeBank::sweep_to`].
     pub fn render(&mut self, drive: Option<&Drive>, frames: usize) -> [&[f32]; 2] {
-        self.render_bowed(drive, None, frames)
+        self.render_played(drive, None, frames)
     }
 
-    /// As [`ModeBank::render`], under a bow. This is slower than with other forces, since each frame depends on the previous one.
-    pub(crate) fn render_bowed(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
+    /// As [`ModeBank::render`], under a player. This is slower than with other forces, since each frame depends on the previous
+    /// one.
+    pub(crate) fn render_played(
+        &mut self,
+        drive: Option<&Drive>,
+        player: Option<Player>,
+        frames: usize,
+    ) -> [&[f32]; 2] {
         debug_assert!(frames <= self.until_tick);
         let frames = frames.min(CONTROL_FRAMES);
-        if drive.is_some() || bow.is_some() {
+        if drive.is_some() || player.is_some() {
             let drive = drive.unwrap_or(&Drive::NONE);
             self.leave_tables();
             self.live = self.len;
@@ -370,8 +376,8 @@ impl ModeBank {
                 Motion::Line { driven, .. } => *driven = true,
                 still => *still = Motion::Still { ticks: 0 },
             }
-            match bow {
-                Some(bow) => self.step_bowed(drive, bow, frames),
+            match player {
+                Some(mut player) => self.step_played(drive, &mut player, frames),
                 None => self.step(drive, true, frames),
             }
         } else {

@@ -35,7 +35,7 @@
 //!
 //! # Frozen
 //!
-//! The bits depend on 16 lanes, 16 frames per table, the orders of summation in `ring`, `step` and `friction`, 32
+//! The bits depend on 16 lanes, 16 frames per table, the orders of summation in `ring`, `step` and `played`, 32
 //! frames per control tick, and 4 frames with the same coefficients.
 //!
 //! # What did not work
@@ -68,7 +68,7 @@
 mod bank;
 pub(super) mod exchange;
 #[allow(clippy::needless_range_loop, reason = "as in `ring`")]
-mod friction;
+mod played;
 #[allow(clippy::needless_range_loop, reason = "kernels index several arrays in step")]
 mod ring;
 mod rows;

@@ -60,8 +60,9 @@ pub(super) struct Modes {
     pub(super) pull_y: Row,
     pub(super) noise_x: Row,
     pub(super) noise: Row,
-    /// Weight of each mode at the point of the bow.
-    pub(super) bow: Row,
+    /// What each mode takes of a player's force, and what it gives of its displacement.
+    pub(super) take: Row,
+    pub(super) give: Row,
 }
 
 impl Modes {
@@ -80,7 +81,8 @@ impl Modes {
         pull_y: Row::ZERO,
         noise_x: Row::ZERO,
         noise: Row::ZERO,
-        bow: Row::ZERO,
+        take: Row::ZERO,
+        give: Row::ZERO,
     };
 }
 

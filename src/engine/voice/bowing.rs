@@ -4,10 +4,11 @@ use super::line::Line;
 use super::values::StruckValues;
 use crate::dsp::cells::Cells;
 use crate::dsp::exciter::Bow;
+use crate::dsp::mode_bank::MAX_MODES;
 use crate::engine::controls::Controls;
 use crate::params::Param;
 use crate::patch::Mode;
-use libm::{fabs, sin};
+use libm::{fabs, sin, sqrt};
 use std::f64::consts::{PI, TAU};
 
 /// Friction at full bow pressure, as a multiple of the friction that brings a mass to the bow's speed within one radian of
@@ -73,7 +74,10 @@ impl Bowing {
         let modes = values.modes().as_slice();
         let place = values.share(Param::BowPosition);
         let weight = |mode: &Mode| fabs(mode.level.into()) * sin(PI * place * f64::from(mode.ratio));
-        bank.set_bow_weights(|m| modes.get(m).map_or(0.0, weight));
+        // The squares of the weights that are played add up to 1.
+        let squares: f64 = modes.iter().take(MAX_MODES).map(weight).map(|weight| weight * weight).sum();
+        let scale = if squares > 0.0 { 1.0 / sqrt(squares) } else { 0.0 };
+        bank.set_contacts(|m| [modes.get(m).map_or(0.0, |mode| weight(mode) * scale) as f32; 2]);
     }
 
     /// The bow of the next frames, if it is on.

@@ -1,10 +1,12 @@
 //! One voice: the strikes of its note, a bank of modes, and the modulation of their pitch, decay and gain.
 
 mod bloom;
+mod blowing;
 mod bowing;
 mod clock;
 mod decay;
 mod energy;
+mod held_noise;
 mod input;
 pub(super) mod key_tracking;
 mod line;
@@ -29,6 +31,7 @@ use crate::dsp::fader::Fader;
 use crate::params::Param;
 use crate::patch::ModeTable;
 use bloom::Bloom;
+use blowing::Blown;
 use clock::Clock;
 use decay::Decay;
 use energy::Energy;
@@ -176,22 +179,31 @@ impl SynthVoice {
         self.fresh = false;
     }
 
-    /// Starts the ramps of bow and input, which end in `frames` frames.
+    /// Starts the ramps of bow, breath, noise and input, which end in `frames` frames.
     fn control_driven(&mut self, instrument: Option<&Instrument>, frames: usize) {
-        let Self { strike, controls, is_held, modulators, bank, sample_rate, pitch, table, .. } = self;
-        if *is_held || strike.bowing.is_on() || strike.input.is_on() {
-            strike.input.control(if *is_held { controls.input_gain } else { 0.0 }, *sample_rate, frames);
+        let Self { strike, controls, is_held, modulators, bank, sample_rate, pitch, table, clock, .. } = self;
+        if *is_held || strike.is_played() {
+            let while_held = |gain| if *is_held { gain } else { 0.0 };
+            strike.input.control(while_held(controls.input_gain), *sample_rate, frames);
+            strike.held_noise.control(while_held(controls.noise_gain), *sample_rate, frames);
             let values = instrument.map(|instrument| StruckValues { instrument, modulators, table: *table });
             let note = || [pitch.frequency(), *sample_rate];
             strike.bowing.control(controls, *is_held, values.as_ref(), note, bank, frames);
+            let note = || Blown {
+                frequency: pitch.frequency() * pitch.ratio(),
+                sample_rate: *sample_rate,
+                age: clock.seconds(clock.age),
+            };
+            strike.blowing.control(controls, *is_held, values.as_ref(), note, bank, frames);
         }
     }
 
-    /// Whether bow or input drive the note, or may start to.
+    /// Whether bow, breath, noise or input drive the note, or may start to.
     fn is_driven(&self) -> bool {
-        let Controls { bow_speed, input_gain, .. } = self.controls;
-        let may_be = bow_speed > 0.0 || input_gain > 0.0 || self.may_be_driven;
-        (self.is_held && may_be) || self.strike.bowing.is_on() || self.strike.input.is_on()
+        let Controls { bow_speed, input_gain, noise_gain, .. } = self.controls;
+        let is_driven = [bow_speed, input_gain, noise_gain].iter().any(|gain| *gain > 0.0);
+        let may_be = is_driven || self.strike.blowing.may_blow() || self.may_be_driven;
+        (self.is_held && may_be) || self.strike.is_played()
     }
 
     /// Starts a ramp to the gain `frames` frames from now. A fresh voice has no gain yet: it begins at the gains
@@ -288,8 +300,8 @@ impl SynthVoice {
         if let Some(separation) = &mut self.separation {
             separation.render(&self.strike, &self.bank, frames);
         }
-        let bow = self.strike.bowing.stroke(frames);
-        self.fader.mix(self.bank.render(self.strike.drive(frames, input), bow.as_ref(), frames), [left, right]);
+        let Self { strike, bank, fader, .. } = self;
+        strike.forces(frames, input, |drive, player| fader.mix(bank.render(drive, player, frames), [left, right]));
         self.tension.advance(frames);
         self.clock.advance(frames as u64);
         self.expressions.advance(frames as u32);

@@ -65,6 +65,8 @@ impl SynthVoice {
                 values.table = *table;
                 Pitch::set_ratios(values, &mut self.bank);
                 self.decay.read(values, &controls, &mut self.bank);
+                self.pitch.correct(values.instrument.sound.correction());
+                self.strike.blowing.retune();
             }
             None => self.decay.press(controls.decay, self.decay.damping.touch),
         }
@@ -108,7 +110,8 @@ impl Voice for SynthVoice {
         }
         (self.let_go, self.fresh, self.is_held) = (None, true, true);
         self.may_move = [Param::Tension, Param::Bloom].iter().any(|param| instrument.bus.leads_to(*param));
-        self.may_be_driven = [Param::BowLevel, Param::InputLevel].iter().any(|level| instrument.bus.leads_to(*level));
+        let driving = [Param::BowLevel, Param::NoiseHeld, Param::InputLevel];
+        self.may_be_driven = driving.iter().any(|level| instrument.bus.leads_to(*level));
         self.modulators.load(&instrument.bus);
         if !self.modulators.are_idle() {
             strike_modulators(instrument, &mut self.modulators, note, true);
@@ -117,6 +120,7 @@ impl Voice for SynthVoice {
         self.strike.start();
         self.pitch.read(&values, unison);
         self.pitch.start(note, &self.controls, instrument.last_pitch);
+        self.pitch.correct(instrument.sound.correction());
         self.table = instrument.sound.patch().modes.place(self.pitch.frequency());
         values.table = self.table;
         Pitch::set_ratios(&values, &mut self.bank);

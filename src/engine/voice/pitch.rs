@@ -12,7 +12,8 @@ use crate::engine::controls::Controls;
 use crate::engine::note::Note;
 use crate::engine::voice_manager::Unison;
 use crate::params::Param;
-use crate::units::{frequency_from_key, ratio_from_semitones};
+use crate::sound::blown::Correction;
+use crate::units::{frequency_from_key, key_from_frequency, ratio_from_semitones};
 use libm::{floor, sin};
 use std::f64::consts::TAU;
 
@@ -23,8 +24,9 @@ pub(super) struct Pitch {
     /// `detune`.
     note: f64,
     tune: f64,
-    /// Detuning of a unison voice in semitones.
+    /// Detuning of a unison voice in semitones, and the transposition of a tube that is blown.
     detune: f64,
+    correction: f64,
     /// The last offset from the pitch that the bank is tuned to, in semitones, and its frequency ratio.
     offset: f64,
     ratio: f64,
@@ -54,6 +56,7 @@ impl Pitch {
             note: 0.0,
             tune: 0.0,
             detune: 0.0,
+            correction: 0.0,
             offset: 0.0,
             ratio: 1.0,
             glide: Glide::new(0.0, 0.0, 0.0),
@@ -86,6 +89,14 @@ impl Pitch {
     /// Sets the pitch and the transposition to those of `note`.
     fn place(&mut self, note: &Note, controls: &Controls) {
         (self.note, self.tune) = (self.tracking.pitch(note), controls.tune);
+    }
+
+    /// Transposes a tube that is blown, so that its note sounds in tune.
+    pub(super) fn correct(&mut self, correction: Option<&Correction>) {
+        self.correction = 0.0;
+        if let Some(correction) = correction {
+            self.correction = correction.at(key_from_frequency(self.frequency(), 440.0));
+        }
     }
 
     /// Starts the first note of a voice, with a glide from the pitch of the note before.
@@ -140,7 +151,7 @@ impl Pitch {
 
     /// Frequency in Hz of a mode of ratio 1.
     pub(super) fn frequency(&self) -> f64 {
-        frequency_from_key(self.note + self.tune + self.detune, self.tracking.a4_hz)
+        frequency_from_key(self.note + self.tune + self.detune + self.correction, self.tracking.a4_hz)
     }
 
     /// The frequency ratio that was computed last.

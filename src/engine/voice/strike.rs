@@ -1,14 +1,16 @@
 //! The strikes of a voice: their forces, and the excitation gains of each mode.
 
+use super::blowing::Blowing;
 use super::bowing::Bowing;
+use super::held_noise::HeldNoise;
 use super::input::Input;
 use super::values::{StruckValues, ratios};
 use super::variation::Variation;
-use crate::dsp::cells::{Cells, MAX_CELLS};
-use crate::dsp::exciter::{BurstSetup, Decay, Drive, Exciter, Stroke};
+use crate::dsp::cells::Cells;
+use crate::dsp::exciter::{BurstSetup, Decay, Drive, Exciter, Player, Stroke};
 use crate::dsp::mode_bank::{ExcitationRows, MAX_MODES};
 use crate::dsp::random;
-use crate::dsp::series::{powers, sines};
+use crate::dsp::series::sines;
 use crate::engine::gain::exciter_gain;
 use crate::engine::note::Note;
 use crate::engine::voice_manager::Unison;
@@ -16,7 +18,7 @@ use crate::params::{Choice, MalletPulse, NoiseDecay, Param};
 use crate::patch::ModeTable;
 use crate::sound::contact::{contact_time, hertz};
 use libm::{fabs, pow, sqrt};
-use std::f64::consts::{FRAC_1_PI, LOG2_10, PI};
+use std::f64::consts::{FRAC_1_PI, PI};
 
 /// Share of the force that remains with the soft pedal.
 const SOFT_FORCE: f64 = 0.6;
@@ -34,8 +36,7 @@ pub(super) struct Strike {
     forces: [f64; 3],
     /// Energy that these forces add.
     energy: f64,
-    /// The forces of the same strike at full velocity and without routes (here that of the noise includes its level), and the
-    /// energy that they would add.
+    /// The forces of the same strike at full velocity and without routes, and the energy that they would add.
     full_forces: [f64; 3],
     full_energy: f64,
     /// Whether noise excites any mode.
@@ -46,7 +47,9 @@ pub(super) struct Strike {
     /// Stream of random numbers of the last strike.
     key: u64,
     pub(super) bowing: Bowing,
+    pub(super) blowing: Blowing,
     pub(super) input: Input,
+    pub(super) held_noise: HeldNoise,
 }
 
 impl Strike {
@@ -64,7 +67,9 @@ impl Strike {
             variation: Variation::NONE,
             key: 0,
             bowing: Bowing::OFF,
+            blowing: Blowing::OFF,
             input: Input::OFF,
+            held_noise: HeldNoise::OFF,
         }
     }
 
@@ -72,7 +77,8 @@ impl Strike {
     pub(super) fn start(&mut self) {
         self.exciter = Exciter::REST;
         (self.forces, self.energy, self.phase) = ([0.0; 3], 0.0, 0.0);
-        (self.bowing, self.input) = (Bowing::OFF, Input::OFF);
+        (self.bowing, self.blowing) = (Bowing::OFF, Blowing::OFF);
+        (self.input, self.held_noise) = (Input::OFF, HeldNoise::OFF);
     }
 
     /// The strikes in progress.
@@ -96,19 +102,34 @@ impl Strike {
         self.key
     }
 
+    /// Whether a player, held noise or incoming sound acts.
+    pub(super) fn is_played(&self) -> bool {
+        self.bowing.is_on() || self.blowing.is_on() || self.input.is_on() || self.held_noise.is_on()
+    }
+
     /// Frames until no force is left.
     pub(super) fn frames_left(&self) -> u32 {
         self.exciter.frames_left()
     }
 
-    /// The force of the next frames, if there is any. `input` is the incoming sound: empty, or one sample for each frame.
-    pub(super) fn drive(&mut self, frames: usize, input: &[f32]) -> Option<&Drive> {
-        let is_driven = self.exciter.is_active() || (self.input.is_on() && !input.is_empty());
+    /// The forces of the next frames, if there are any: those of strikes and of the incoming sound, and the player's. `input` is
+    /// the incoming sound: empty, or one sample for each frame. Breath takes the place of a bow.
+    pub(super) fn forces(&mut self, frames: usize, input: &[f32], render: impl FnOnce(Option<&Drive>, Option<Player>)) {
+        let is_noisy = self.held_noise.is_on();
+        let is_driven = self.exciter.is_active() || (self.input.is_on() && !input.is_empty()) || is_noisy;
         if is_driven || self.input.is_on() {
             self.exciter.fill(frames, &mut self.drive);
             self.input.add_to(&mut self.drive.push, input, frames);
+            if is_noisy {
+                self.held_noise.add_to(&mut self.drive.noise, frames);
+            }
         }
-        is_driven.then_some(&self.drive)
+        let bow = self.bowing.stroke(frames);
+        let player = match self.blowing.blow(frames) {
+            Some(valve) => Some(Player::Breath(valve)),
+            None => bow.as_ref().map(Player::Bow),
+        };
+        render(is_driven.then_some(&self.drive), player);
     }
 
     /// Computes each mode's excitation gains. Returns the change of the energy that the last strike adds.
@@ -116,10 +137,10 @@ impl Strike {
         let table = values.modes();
         let [mallet, pluck, burst] = self.forces;
         let [full_mallet, full_pluck, full_burst] = self.full_forces;
-        let (reach, noise_gain) = (values.share(Param::NoiseReach), exciter_gain(values.get(Param::NoiseLevel)));
+        let reach = values.share(Param::NoiseReach);
         let turned_noise = table.has_phases();
         let (mut noisy, mut energy, mut full) = (false, 0.0, 0.0);
-        let cells = table.as_slice().chunks(MAX_MODES).zip(tilted_levels(values));
+        let cells = table.as_slice().chunks(MAX_MODES).zip(values.tilted_levels());
         for (cell, (modes, mut levels)) in cells.enumerate() {
             let (first, ratios) = (cell * MAX_MODES, ratios(modes));
             self.variation.vary(first, &mut levels);
@@ -134,12 +155,11 @@ impl Strike {
             for (m, mode) in modes.iter().enumerate() {
                 let (level, strike) = (levels[m], f64::from(mode.strike));
                 let (push, pull) = (level * strike * at_mallet[m], level * strike * at_finger[m]);
-                let reached = level * (1.0 - strike * (1.0 - reach));
-                let noise = reached * noise_gain;
+                let noise = level * (1.0 - strike * (1.0 - reach));
                 (gains.push[m], gains.pull[m], gains.noise[m]) = (push as f32, pull as f32, noise as f32);
                 let (pulses, burst) = (fabs(push * mallet) + fabs(pull * pluck), noise * burst);
                 energies[0][m] = pulses * pulses + burst * burst;
-                let (pulses, burst) = (fabs(push * full_mallet) + fabs(pull * full_pluck), reached * full_burst);
+                let (pulses, burst) = (fabs(push * full_mallet) + fabs(pull * full_pluck), noise * full_burst);
                 energies[1][m] = pulses * pulses + burst * burst;
             }
             noisy |= gains.noise.iter().any(|noise| *noise != 0.0);
@@ -212,11 +232,14 @@ impl Strike {
             force * soft / sqrt(count as f64)
         };
         let [mallet, pluck, burst] = [Param::MalletVelocity, Param::PluckVelocity, Param::NoiseVelocity].map(force);
-        let levels = [Param::MalletLevel, Param::PluckLevel].map(|param| exciter_gain(values.get(param)));
-        self.forces = [mallet * levels[0], pluck * levels[1], burst];
+        let levels = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel];
+        let [mallet_gain, pluck_gain, noise_gain] = levels.map(|param| exciter_gain(values.get(param)));
+        self.forces = [mallet * mallet_gain, pluck * pluck_gain, burst * noise_gain];
         let level = |param| exciter_gain(values.instrument.knobs.modulated(param).into()) / sqrt(count as f64);
-        self.full_forces = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel].map(level);
+        self.full_forces = levels.map(level);
         self.bowing.strike(values, force(Param::BowVelocity));
+        self.blowing.strike(values, key, count);
+        self.held_noise.strike(values, key, burst);
         // The energy of earlier strikes has been counted already.
         self.energy = 0.0;
         let more = self.set_gains(values, bank);
@@ -233,7 +256,7 @@ impl Strike {
             push: (self.forces[0] as f32, pushing),
             pull: (self.forces[1] as f32, frames(contact_time(hardness(Param::PluckHardness)))),
             noise: BurstSetup {
-                force: if self.is_noisy { burst as f32 } else { 0.0 },
+                force: if self.is_noisy { self.forces[2] as f32 } else { 0.0 },
                 frames: frames(values.get(Param::NoiseTime)),
                 attack: frames(values.get(Param::NoiseAttack)),
                 decay: match NoiseDecay::from_value(values.get(Param::NoiseDecay) as f32) {
@@ -251,39 +274,13 @@ impl Strike {
     }
 }
 
-/// The levels of the modes, a row for each cell, with the strike's tilt: each level is multiplied by a power of the mode's
-/// ratio, and all by a factor that keeps the sum of their magnitudes.
-fn tilted_levels(values: &StruckValues) -> [[f64; MAX_MODES]; MAX_CELLS] {
-    let (table, exponent) = (values.modes(), values.get(Param::Tilt) / (20.0 / LOG2_10));
-    let mut levels = [[0.0; MAX_MODES]; MAX_CELLS];
-    let rows = table.as_slice().chunks(MAX_MODES).zip(table.octaves().chunks(MAX_MODES));
-    if exponent == 0.0 {
-        for (levels, (modes, _)) in levels.iter_mut().zip(rows) {
-            levels.iter_mut().zip(modes).for_each(|(level, mode)| *level = mode.level.into());
-        }
-        return levels;
-    }
-    let (mut plain, mut total) = (0.0, 0.0);
-    for (levels, (modes, octaves)) in levels.iter_mut().zip(rows) {
-        powers(octaves, exponent, levels);
-        for (level, mode) in levels.iter_mut().zip(modes) {
-            *level *= f64::from(mode.level);
-            plain += fabs(mode.level.into());
-            total += fabs(*level);
-        }
-    }
-    let balance = if total > 0.0 { plain / total } else { 1.0 };
-    levels.as_flattened_mut().iter_mut().for_each(|level| *level *= balance);
-    levels
-}
-
 /// The greatest amplitude of a nudge of mode `m`, for one of `count` unison voices; 0 if there is no such mode.
 pub(super) fn most_nudged(values: &StruckValues, m: usize, count: usize) -> f64 {
     let level = |param| exciter_gain(values.instrument.knobs.modulated(param).into());
     let levels = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel].map(level);
     let loudest = levels.into_iter().fold(0.0, f64::max);
     let force = if loudest > 0.0 { loudest } else { 1.0 } / sqrt(count as f64);
-    tilted_levels(values).as_flattened().get(m).map_or(0.0, |level| force * fabs(*level))
+    values.tilted_levels().as_flattened().get(m).map_or(0.0, |level| force * fabs(*level))
 }
 
 /// Contact time of the mallet in frames, for a speed from 0 to 1 and a note's frequency in Hz.

@@ -1,11 +1,15 @@
 //! The parameter values that a strike reads.
 
+use crate::dsp::cells::MAX_CELLS;
 use crate::dsp::mode_bank::MAX_MODES;
+use crate::dsp::series::powers;
 use crate::engine::instrument::Instrument;
 use crate::engine::modulation::{Modulators, Struck};
 use crate::engine::note::Note;
 use crate::params::Param;
 use crate::patch::{Mode, ModeTable};
+use libm::fabs;
+use std::f64::consts::LOG2_10;
 
 /// Passes a strike to the modulators. `first` is true for the first strike of the voice.
 pub(super) fn strike_modulators(instrument: &Instrument, modulators: &mut Modulators, note: &Note, first: bool) {
@@ -50,5 +54,31 @@ impl<'a> StruckValues<'a> {
     /// A parameter in per cent, as a fraction of 1.
     pub(super) fn share(&self, param: Param) -> f64 {
         self.get(param) * 0.01
+    }
+
+    /// The levels of the modes, a row for each cell, with the strike's tilt: each level is multiplied by a power of the mode's
+    /// ratio, and all by a factor that keeps the sum of their magnitudes.
+    pub(super) fn tilted_levels(&self) -> [[f64; MAX_MODES]; MAX_CELLS] {
+        let (table, exponent) = (self.modes(), self.get(Param::Tilt) / (20.0 / LOG2_10));
+        let mut levels = [[0.0; MAX_MODES]; MAX_CELLS];
+        let rows = table.as_slice().chunks(MAX_MODES).zip(table.octaves().chunks(MAX_MODES));
+        if exponent == 0.0 {
+            for (levels, (modes, _)) in levels.iter_mut().zip(rows) {
+                levels.iter_mut().zip(modes).for_each(|(level, mode)| *level = mode.level.into());
+            }
+            return levels;
+        }
+        let (mut plain, mut total) = (0.0, 0.0);
+        for (levels, (modes, octaves)) in levels.iter_mut().zip(rows) {
+            powers(octaves, exponent, levels);
+            for (level, mode) in levels.iter_mut().zip(modes) {
+                *level *= f64::from(mode.level);
+                plain += fabs(mode.level.into());
+                total += fabs(*level);
+            }
+        }
+        let balance = if total > 0.0 { plain / total } else { 1.0 };
+        levels.as_flattened_mut().iter_mut().for_each(|level| *level *= balance);
+        levels
     }
 }

@@ -25,6 +25,9 @@ use std::f64::consts::{LOG2_10, PI, SQRT_2};
 /// tick. Until the next tick, a sweep that rises to the end of its range can increase this 7.1 times, as it can for a
 /// strike.
 const CLASSIC: f64 = 8.0 * 7.1;
+/// Bound of what breath gives. The true one is in another norm, that of pressures (`dsp/mode_bank/played_tests`), and depends on
+/// the smallest level of a mode; here, breath must only stay finite.
+const BREATH: f64 = 1e12;
 /// Factor by which the soft pedal multiplies the force.
 const SOFT: f64 = 0.6;
 
@@ -68,6 +71,10 @@ struct Part {
     /// Bound of the sum of all modes' amplitudes that a bow of speed 1 gives until the end of the case, times the highest level
     /// of the bow.
     bow: f64,
+    /// Bound of the sum of all frames of noise that is held.
+    held: f64,
+    /// Whether breath may blow.
+    blows: bool,
     /// The highest gain of mallet, pluck and noise, or 1 if they may all be off: the greatest force of a nudge.
     nudge: f64,
     /// Factor by which bloom may raise the sum of the amplitudes that strikes give; `None` if nothing blooms.
@@ -82,8 +89,10 @@ struct Strike {
     end: u64,
     /// Forces of mallet, pluck and noise; that of noise is its upper bound.
     forces: [f64; 3],
-    /// Bound of the sum of all modes' amplitudes that a bow gives.
-    bow: f64,
+    /// Bound of the sum of all modes' amplitudes that a bow or a breath gives.
+    played: f64,
+    /// Bound of the sum of the frames of held noise.
+    held: f64,
     /// Force of a nudge.
     nudge: f64,
     law: f64,
@@ -94,7 +103,9 @@ impl Strike {
     fn amplitudes(&self) -> [f64; 3] {
         let [mallet, pluck, noise] = self.forces;
         let Reach { struck, plucked, noise: burst, nudged } = self.reach;
-        let sum = |i: usize| mallet * struck[i] + pluck * plucked[i] + noise * burst[i] + self.nudge * nudged[i];
+        let sum = |i: usize| {
+            mallet * struck[i] + pluck * plucked[i] + (noise + self.held) * burst[i] + self.nudge * nudged[i]
+        };
         [0, 1, 2].map(|i| self.law * sum(i))
     }
 }
@@ -112,6 +123,8 @@ impl Part {
             unison: 1.0,
             moves_tilt: false,
             bow: 0.0,
+            held: 0.0,
+            blows: false,
             nudge: 1.0,
             bloom: None,
             reach: None,
@@ -119,6 +132,8 @@ impl Part {
         // A voice that is struck again keeps the number of unison voices of its note’s start, so the highest number counts.
         part.unison = part.most(case, Param::Unison).max(1.0);
         part.bow = part.most_bow(case);
+        part.held = part.most_held(case);
+        part.blows = part.most(case, Param::BreathLevel) > -60.0;
         let levels = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel].map(|level| part.most(case, level));
         part.nudge = levels.into_iter().map(gain_from_db).fold(1.0, f64::max);
         part.bloom = part.most_bloom(case);
@@ -150,6 +165,13 @@ impl Part {
     fn most_bow(&self, case: &Case) -> f64 {
         let level = self.most(case, Param::BowLevel);
         if level > -60.0 { gain_from_db(level) * sqrt(2.0 * case.frames as f64 * 64.0) } else { 0.0 }
+    }
+
+    /// Held noise is at most its force in each frame; a filter may double that.
+    fn most_held(&self, case: &Case) -> f64 {
+        let level = self.most(case, Param::NoiseHeld);
+        let force = 2.0 * sqrt(6.0 * 6.908 / case.sample_rate);
+        if level > -60.0 { gain_from_db(level) * force * case.frames as f64 } else { 0.0 }
     }
 
     /// The amplitudes of `n` modes add up to at most `√n` times the root of their energy. After several strikes, that root is at
@@ -184,8 +206,8 @@ impl Part {
             }
             let reach = self.reach();
             let mut rise = strike.map_or([0.0; 3], |strike| strike.amplitudes());
-            let bowed = strike.map_or(0.0, |strike| strike.bow);
-            rise = add(rise, [SQRT_2, SQRT_2, 1.0].map(|gain| gain * bowed));
+            let played = strike.map_or(0.0, |strike| strike.played);
+            rise = add(rise, [SQRT_2, SQRT_2, 1.0].map(|gain| gain * played));
             // The rest of earlier forces passes through the gains of this strike, or of a brightness that comes before the first
             // frame.
             let running = |earlier: &&mut Strike| earlier.end > u64::from(event.frame) && earlier.reach != reach;
@@ -248,7 +270,7 @@ impl Part {
         let law = if is_exact { 1.0 } else { CLASSIC };
         if let EventKind::Nudge { amplitude, .. } = event.kind {
             let nudge = f64::from(unit(amplitude)) * self.nudge * sqrt(self.unison);
-            return Some(Strike { end: 0, forces: [0.0; 3], bow: 0.0, nudge, law, reach: self.reach() });
+            return Some(Strike { end: 0, forces: [0.0; 3], played: 0.0, held: 0.0, nudge, law, reach: self.reach() });
         }
         let EventKind::NoteOn { velocity, .. } = event.kind else { return None };
         let soft = if self.soft[usize::from(event.channel & 15)] { SOFT } else { 1.0 };
@@ -265,10 +287,11 @@ impl Part {
         let forces = [
             force(Param::MalletVelocity) * self.level(Param::MalletLevel),
             force(Param::PluckVelocity) * self.level(Param::PluckLevel),
-            force(Param::NoiseVelocity) * noise.most(is_exact),
+            force(Param::NoiseVelocity) * self.level(Param::NoiseLevel) * noise.most(is_exact),
         ];
-        let bow = force(Param::BowVelocity) * self.bow;
-        Some(Strike { end, forces, bow, nudge: 0.0, law, reach: self.reach() })
+        let played = force(Param::BowVelocity) * self.bow + if self.blows { BREATH } else { 0.0 };
+        let held = force(Param::NoiseVelocity) * self.held;
+        Some(Strike { end, forces, played, held, nudge: 0.0, law, reach: self.reach() })
     }
 
     /// The reach of a strike of force 1 with the present patch.
@@ -287,7 +310,6 @@ impl Part {
     /// The reach with one table of modes.
     fn reach_of(&self, table: &ModeTable) -> Reach {
         let modes = table.as_slice();
-        let noise_gain = self.level(Param::NoiseLevel);
         let varied = gain_from_db(self.value(Param::VaryModes));
         let tilt = self.value(Param::Tilt) / (20.0 / LOG2_10);
         let tilted = |mode: &Mode| fabs(f64::from(mode.level)) * pow(f64::from(mode.ratio), tilt);
@@ -304,7 +326,7 @@ impl Part {
             let plucked =
                 struck * if self.value(Param::VaryPosition) > 0.0 || table.has_phases() { 1.0 } else { fabs(point) };
             let heard = |share: f64| gains.map(|gain| gain * share);
-            let noise = heard(reached * noise_gain);
+            let noise = heard(reached);
             let own = Reach { struck: heard(struck), plucked: heard(plucked), noise, nudged: heard(1.0) };
             reach = reach.plus(own, level);
             furthest = furthest.max(own);

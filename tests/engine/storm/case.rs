@@ -106,7 +106,8 @@ pub(crate) const PARAM_IDS: &str = "mallet_pulse mallet_hardness mallet_hardness
     mallet_level pluck_level pluck_hardness pluck_width noise_reach noise_decay noise_attack noise_colour noise_hits \
     noise_spacing mallet_velocity pluck_velocity noise_velocity mallet_mass mallet_speed mallet_key vary_position \
     vary_hardness vary_modes bow_level bow_force bow_position bow_slip bow_velocity input_level \
-    tension bloom bloom_time touch touch_position";
+    tension bloom bloom_time touch touch_position noise_held breath_level breath_pressure breath_valve breath_opening \
+    breath_lip breath_noise breath_attack breath_tongue";
 
 /// Destinations of routes: the parameters that move pitch and damping and those of the modulation itself, but none on
 /// which the bound depends. New ones must be added at the end.

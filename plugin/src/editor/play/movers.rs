@@ -9,11 +9,12 @@ use sprung::params::Param;
 use sprung::preset::Playable;
 
 /// Exciters with their names, the levels that switch them on where they were off, in dB, and what they do.
-const MOVERS: [(Param, &str, f32, &str); 5] = [
+const MOVERS: [(Param, &str, f32, &str); 6] = [
     (Param::MalletLevel, "Mallet", 0.0, "A mallet strikes it."),
     (Param::PluckLevel, "Pluck", 0.0, "A finger or a plectrum pulls it aside and lets go."),
     (Param::NoiseLevel, "Noise", -6.0, "A burst of noise: a brush, a scrape, breath."),
     (Param::BowLevel, "Bow", 0.0, "A bow, for as long as a key is held."),
+    (Param::BreathLevel, "Breath", -18.0, "Breath through a reed or lips, for as long as a key is held."),
     (Param::InputLevel, "Input", 0.0, "Incoming sound drives it, for as long as a key is held."),
 ];
 
@@ -117,6 +118,10 @@ fn paint(painter: &Painter, rect: Rect, param: Param, colour: Color32, palette: 
         Param::BowLevel => {
             painter.add(Shape::line(vec![at(0.0, 0.9), at(0.2, 0.45), at(0.6, 0.2), at(1.0, 0.1)], stroke));
             painter.line_segment([at(0.0, 0.9), at(1.0, 0.1)], Stroke::new(1.0, colour));
+        }
+        Param::BreathLevel => {
+            painter.add(Shape::line(vec![at(1.0, 0.2), at(0.35, 0.2), at(0.0, 0.75), at(1.0, 0.75)], stroke));
+            painter.line_segment([at(0.05, 0.9), at(0.5, 0.9)], Stroke::new(1.0, palette.muted));
         }
         _ => {
             let points =

@@ -1,0 +1,143 @@
+//! The breath of a voice: the pressure in the mouth, the valve, and what the tube's modes take and give.
+
+use super::line::Line;
+use super::values::StruckValues;
+use crate::dsp::cells::Cells;
+use crate::dsp::exciter::Valve;
+use crate::dsp::mode_bank::MAX_MODES;
+use crate::engine::controls::Controls;
+use crate::engine::gain::exciter_gain;
+use crate::params::{Param, Valve as Kind};
+use crate::sound::blown::{contact, flow, law, share};
+use libm::{exp, fabs, pow, sqrt};
+
+/// The breath comes within 5 % of its pressure in the attack time, and leaves in this many seconds.
+const ATTACKS: f64 = 3.0;
+const LEAVES: f64 = 0.03;
+
+/// Extra pressure when the tongue lets go fully, as a share of the pressure, and the seconds in which it goes.
+const TONGUE: f64 = 1.0;
+const TONGUE_SECONDS: f64 = 0.06;
+
+/// Pressure below which the breath is over.
+const NO_BREATH: f64 = 1e-4;
+
+/// The breath of a voice. Real-time safe.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Blowing {
+    valve: Valve,
+    kind: Kind,
+    /// Amplitude at a pressure of 1, of a mode whose level is 1; 0 without breath.
+    amplitude: f64,
+    attack: f64,
+    tongue: f64,
+    pressure: Line,
+    /// The pressure at the next control tick.
+    reached: f64,
+    /// Whether the modes have their contacts.
+    is_placed: bool,
+}
+
+/// A note as breath has it: its frequency with all bends and the sample rate in Hz, and the seconds since its strike.
+pub(super) struct Blown {
+    pub(super) frequency: f64,
+    pub(super) sample_rate: f64,
+    pub(super) age: f64,
+}
+
+impl Blowing {
+    /// No breath.
+    pub(super) const OFF: Self = Self {
+        valve: Valve::REST,
+        kind: Kind::Reed,
+        amplitude: 0.0,
+        attack: 0.0,
+        tongue: 0.0,
+        pressure: Line::ZERO,
+        reached: 0.0,
+        is_placed: false,
+    };
+
+    /// Reads the breath's parameters at a strike. `key` is the strike's stream of random numbers, `count` that of unison voices.
+    pub(super) fn strike(&mut self, values: &StruckValues, key: u64, count: usize) {
+        self.amplitude = exciter_gain(values.get(Param::BreathLevel)) / sqrt(count as f64);
+        self.kind = values.instrument.knobs.choice(Param::BreathValve);
+        (self.attack, self.tongue) = (values.get(Param::BreathAttack), TONGUE * values.share(Param::BreathTongue));
+        (self.valve.key, self.is_placed) = (key, false);
+    }
+
+    /// The tube has another length: its modes must get their contacts again.
+    pub(super) fn retune(&mut self) {
+        self.is_placed = false;
+    }
+
+    /// Whether there is breath in the tube, or about to be.
+    pub(super) fn is_on(&self) -> bool {
+        !self.pressure.is_zero()
+    }
+
+    /// Whether breath drives a held note, or would as soon as it has a pressure.
+    pub(super) fn may_blow(&self) -> bool {
+        self.amplitude > 0.0
+    }
+
+    /// Starts a ramp of the pressure that ends in `frames` frames, and sets the valve. Without `values`, a breath whose modes have
+    /// no contacts yet does not start.
+    pub(super) fn control(
+        &mut self,
+        controls: &Controls,
+        is_held: bool,
+        values: Option<&StruckValues>,
+        note: impl FnOnce() -> Blown,
+        bank: &mut Cells,
+        frames: usize,
+    ) {
+        let wanted = if is_held && self.may_blow() { f64::from(controls.breath_pressure) } else { 0.0 };
+        if wanted == 0.0 && !self.is_on() {
+            return;
+        }
+        let Blown { frequency, sample_rate, age } = note();
+        if !self.is_placed {
+            let Some(values) = values else { return };
+            self.place(values, frequency, sample_rate, bank);
+        }
+        let left = age / TONGUE_SECONDS;
+        let tongued = wanted * (1.0 + self.tongue * exp(-left * left));
+        let seconds = if wanted > 0.0 { self.attack } else { LEAVES };
+        let near = if seconds > 0.0 { exp(-ATTACKS * frames as f64 / (seconds * sample_rate)) } else { 0.0 };
+        self.reached = tongued + (self.reached - tongued) * near;
+        if wanted == 0.0 && self.reached < NO_BREATH {
+            self.reached = 0.0;
+        }
+        self.pressure.aim(self.reached as f32, frames);
+        self.valve.set(law(self.kind, controls.breath_lip, frequency), sample_rate);
+        self.valve.breath.opening = flow(controls.breath_opening) as f32;
+        self.valve.breath.per_frame = (frequency / sample_rate) as f32;
+        self.valve.breath.noise = controls.breath_noise;
+    }
+
+    /// Sets what the modes take and give.
+    fn place(&mut self, values: &StruckValues, frequency: f64, sample_rate: f64, bank: &mut Cells) {
+        self.is_placed = true;
+        let (modes, stretch) = (values.modes().as_slice(), values.get(Param::Stretch));
+        let [levels, ..] = values.tilted_levels();
+        let loudest = levels.iter().fold(0.0, |most, level| f64::max(most, fabs(*level)));
+        let (mut ratios, mut shares) = ([0.0; MAX_MODES], [0.0; MAX_MODES]);
+        for (m, mode) in modes.iter().take(MAX_MODES).enumerate() {
+            ratios[m] = pow(mode.ratio.into(), stretch);
+            shares[m] = share(mode, frequency * ratios[m], sample_rate);
+        }
+        self.valve.breath.shares = shares.iter().sum::<f64>() as f32;
+        bank.set_contacts(|m| contact(shares[m], [levels[m], loudest], ratios[m], self.amplitude));
+    }
+
+    /// The breath of the next frames, if there is any.
+    pub(super) fn blow(&mut self, frames: usize) -> Option<&mut Valve> {
+        if !self.is_on() {
+            return None;
+        }
+        (self.valve.breath.pressure, self.valve.breath.passed) = self.pressure.parts();
+        self.pressure.advance(frames);
+        Some(&mut self.valve)
+    }
+}
