@@ -34,8 +34,9 @@ use vst3::{ComPtr, ComWrapper, Interface};
 /// Frames per block.
 pub(crate) const FRAMES: usize = 64;
 
-/// The plugin's class id. Pinned: a host finds a project's plugin by it.
-const CLASS: &[u8; 16] = b"SprungMassSpring";
+/// The plugin's class id. Pinned: a host finds a project's plugin by it. On Windows ids have the order of COM's, whose numbers
+/// are little-endian, so that hosts of all systems write the same text for it.
+const CLASS: &[u8; 16] = if cfg!(windows) { b"urpSgnaMssSpring" } else { b"SprungMassSpring" };
 
 /// The plugin's factory. The library stays open as long as anything of it is in use.
 pub(crate) struct Module {
