@@ -5,7 +5,8 @@
 set -eu
 cd "$(dirname "$0")/../.."
 target=x86_64-pc-windows-gnu
-${CARGO:-cargo} rustc --manifest-path plugin/Cargo.toml --lib --crate-type cdylib --target $target -- -C strip=symbols
+# The library that the tests in hosts have, so that it is not compiled a second time.
+${CARGO:-cargo} test --manifest-path plugin/Cargo.toml --test hosts --no-run --target $target
 # A prefix of its own: the first program in a prefix decides whether Windows has a screen there.
 work=$(pwd)/target/wine
 mkdir -p "$work"
@@ -21,4 +22,4 @@ openbox > "$work/openbox.log" 2>&1 &
 library=$WINEPREFIX/drive_c/windows/system32/bcryptprimitives.dll
 [ -e "$library" ] ||
     x86_64-w64-mingw32-gcc -O2 -shared -s -o "$library" plugin/tests/windows/bcryptprimitives.c -ladvapi32
-wine "$work/host.exe" "Z:$(pwd)/target/$target/debug/sprung_plugin.dll"
+wine "$work/host.exe" "Z:$(pwd)/target/$target/debug/deps/sprung_plugin.dll"
