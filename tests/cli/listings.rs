@@ -117,7 +117,7 @@ fn sounds_of_the_user_have_names_too() {
     sandbox.succeeds("render --note C4 --preset Kick -o b.wav");
     assert_eq!(sandbox.read("a.wav"), sandbox.read("b.wav"));
     // The preset's file is an input, so no output may replace it.
-    let mut replace = sandbox.sprung("presets show MyKick --force --figure");
+    let mut replace = sandbox.sprung("render --note C4 --preset MyKick --force -o");
     let output = replace.arg(library.presets_folder().join("mykick.toml")).assert().code(1).get_output().clone();
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(told.contains("mykick.toml: this is the input"), "{told}");
