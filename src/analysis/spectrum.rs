@@ -1,7 +1,7 @@
 //! Spectra: windowed magnitudes, their peaks, spectrograms and octave band levels.
 
 use super::level::{SILENCE_DB, dbfs};
-use libm::{cos, log10};
+use libm::{cos, hypot, log10};
 use realfft::{RealFftPlanner, RealToComplex, num_complex::Complex};
 use std::{f64::consts::PI, sync::Arc};
 
@@ -65,7 +65,7 @@ impl Transform {
     /// As [`Transform::run`], in dB.
     fn levels(&mut self, samples: &[f32], start: isize) -> Vec<f64> {
         let scale = 2.0 / self.window.iter().sum::<f64>();
-        self.run(samples, start).iter().map(|bin| dbfs(bin.norm() * scale)).collect()
+        self.run(samples, start).iter().map(|bin| dbfs(hypot(bin.re, bin.im) * scale)).collect()
     }
 }
 

@@ -15,7 +15,8 @@ use std::path::Path;
 pub(super) const EXAMPLES: &str = "\
 Examples:
   sprung completions bash > ~/.local/share/bash-completion/completions/sprung
-  sprung completions fish > ~/.config/fish/completions/sprung.fish";
+  sprung completions fish > ~/.config/fish/completions/sprung.fish
+  sprung completions powershell >> $PROFILE";
 
 #[derive(clap::Args)]
 pub(super) struct Args {

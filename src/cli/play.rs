@@ -46,7 +46,7 @@ pub(super) struct Args {
     /// Sound device, by its name or a part of it. See --list
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
-    /// Sound system: alsa, jack or another that --list shows
+    /// Sound system, such as alsa, jack, wasapi or coreaudio: --list shows those that are here
     #[arg(long, value_name = "NAME")]
     host: Option<String>,
     /// Sample rate, 1000-768000 Hz (44100, 44.1k) [default: 48000 if the device has it]

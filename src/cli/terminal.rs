@@ -32,7 +32,14 @@ pub(super) fn print(text: &str) -> Result<()> {
 /// an error.
 pub(super) fn checked(written: std::io::Result<()>) -> Result<()> {
     match written {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::io("stdout", error)),
+        Err(error) if !is_closed(&error) => Err(Error::io("stdout", error)),
         _ => Ok(()),
     }
+}
+
+/// Whether the reader of a pipe has closed it.
+pub(super) fn is_closed(error: &std::io::Error) -> bool {
+    // Windows has three errors for this, of which the standard library knows two.
+    const ERROR_PIPE_NOT_CONNECTED: i32 = 233;
+    error.kind() == ErrorKind::BrokenPipe || (cfg!(windows) && error.raw_os_error() == Some(ERROR_PIPE_NOT_CONNECTED))
 }

@@ -166,7 +166,7 @@ mod tests {
             let mut files: Vec<String> = walkdir(&root)
                 .into_iter()
                 .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
-                .map(|path| path.strip_prefix(&root).unwrap().with_extension("").to_str().unwrap().to_owned())
+                .map(|path| path.strip_prefix(&root).unwrap().with_extension("").to_str().unwrap().replace('\\', "/"))
                 .collect();
             let mut listed: Vec<&str> = embedded.iter().map(|(name, _)| *name).collect();
             files.sort();

@@ -187,3 +187,36 @@ fn every_file_opens_with_its_purpose() {
     let breach = |file: &PathBuf| rules::purpose(file, &fs::read_to_string(project().join(file)).unwrap());
     assert_none(&all.iter().filter_map(breach).collect::<Vec<_>>());
 }
+
+/// What a file says that depends on its system.
+const OF_A_SYSTEM: &[&str] = &[
+    "cfg(unix)",
+    "cfg(windows)",
+    "cfg(target_os",
+    "cfg(target_family",
+    "cfg(not(target_os",
+    "cfg!(unix)",
+    "cfg!(windows)",
+    "cfg!(target_os",
+    "cfg!(all(target_os",
+    "libc::",
+    "env::consts::",
+];
+
+#[test]
+fn every_file_that_knows_its_system_is_listed() {
+    let list = fs::read_to_string(project().join("PLATFORMS.md")).unwrap();
+    let mut all = Vec::new();
+    for folder in ["src", "tests", "benches", "plugin", "xtask"] {
+        files(Path::new(folder), &mut all);
+    }
+    // This file has the words.
+    all.retain(|file| *file != Path::new("tests/architecture/main.rs"));
+    let breach = |file: &PathBuf| {
+        let text = fs::read_to_string(project().join(file)).unwrap();
+        let sign = OF_A_SYSTEM.iter().find(|sign| text.contains(**sign))?;
+        let name = format!("`{}`", file.display());
+        (!list.contains(&name)).then(|| format!("{name} has {sign}, and PLATFORMS.md has no row for it"))
+    };
+    assert_none(&all.iter().filter_map(breach).collect::<Vec<_>>());
+}

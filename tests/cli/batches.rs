@@ -256,7 +256,7 @@ fn another_version_does_not_go_on() {
     let other = manifest.replace(&own, "\"version\":\"0.0.7\"");
     assert_ne!(manifest, other);
     sandbox.write("sounds/manifest.jsonl", &other);
-    let message = "sounds/manifest.jsonl: version 0.0.7 has made job 0, and this is version";
+    let message = "manifest.jsonl: version 0.0.7 has made job 0, and this is version";
     sandbox.fails("batch jobs.jsonl --out sounds --resume", 1, message);
     sandbox.fails("batch jobs.jsonl --out sounds --resume --shard 1/2", 1, "or choose a new folder");
     assert_eq!(sandbox.read("sounds/manifest.jsonl"), other.as_bytes());
@@ -399,7 +399,7 @@ fn what_cannot_be_loaded_ends_the_batch_and_leaves_what_is_finished() {
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(told.contains("jobs.jsonl:2: ") && told.contains("‘Kick’"), "{told}");
     assert_eq!(lines(&sandbox, "sounds/manifest.jsonl").len(), 1);
-    let again = "sounds/manifest.jsonl: a batch is there already: add --resume to go on with it";
+    let again = "manifest.jsonl: a batch is there already: add --resume to go on with it";
     sandbox.fails("batch jobs.jsonl --out sounds", 1, again);
     sandbox.write("jobs.jsonl", format!("{first}\n{first}\n"));
     sandbox.succeeds("batch jobs.jsonl --out sounds --resume");

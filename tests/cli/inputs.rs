@@ -2,6 +2,7 @@
 
 use crate::{Sandbox, end, note_on, song};
 use sprung::preset::Preset;
+#[cfg(unix)]
 use std::fs::{File, OpenOptions};
 
 fn sandbox() -> Sandbox {
@@ -41,6 +42,7 @@ fn an_input_is_not_replaced() {
 }
 
 /// Opens a file for appending, as the shell does for `>>`.
+#[cfg(unix)]
 fn append(sandbox: &Sandbox, name: &str) -> File {
     OpenOptions::new().append(true).open(sandbox.path(name)).unwrap()
 }

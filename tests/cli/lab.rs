@@ -3,6 +3,7 @@
 use crate::{DEFAULT_SIGNALS, Sandbox};
 use std::io::Read;
 use std::process::{Child, Command, Stdio};
+#[cfg(unix)]
 use std::time::{Duration, Instant};
 
 fn text(bytes: Vec<u8>) -> String {
@@ -125,9 +126,12 @@ fn numbers_go_to_stdout_and_the_table_out_of_their_way() {
 
 /// Starts `sprung`; the caller reads its output.
 fn start(sandbox: &Sandbox, args: &str) -> Child {
-    let [env, defaults] = DEFAULT_SIGNALS;
-    Command::new(env)
-        .args([defaults, assert_cmd::cargo::cargo_bin!("sprung").to_str().unwrap()])
+    let sprung = assert_cmd::cargo::cargo_bin!("sprung");
+    let mut command = if cfg!(unix) { Command::new(DEFAULT_SIGNALS[0]) } else { Command::new(sprung) };
+    if cfg!(unix) {
+        command.arg(DEFAULT_SIGNALS[1]).arg(sprung);
+    }
+    command
         .args(args.split_whitespace())
         .current_dir(sandbox.path("."))
         .stdout(Stdio::piped())

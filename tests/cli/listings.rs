@@ -2,7 +2,6 @@
 
 use crate::Sandbox;
 use sprung::params::{PARAMS, Unit};
-#[cfg(target_os = "linux")]
 use sprung::preset::library::Library;
 use sprung::preset::{KitPreset, Preset};
 use std::process::{Command, Stdio};
@@ -93,14 +92,19 @@ fn presets_are_listed_shown_and_checked() {
     sandbox.fails("presets check", 2, "<FILE>");
 }
 
-#[cfg(target_os = "linux")]
 #[test]
 fn sounds_of_the_user_have_names_too() {
     let sandbox = Sandbox::new();
     assert_eq!(sandbox.succeeds("presets list --own"), b"");
     sandbox.fails("render --note C4 --preset MyKick -o a.wav", 1, "there is no factory preset or kit ‘MyKick’");
     let mine = Preset { name: "MyKick".to_owned(), ..Preset::find("Kick").unwrap().clone() };
-    let library = Library::at(sandbox.path("data/sprung"));
+    // Where each system keeps a program's data.
+    let folder = match std::env::consts::OS {
+        "windows" => "data/Sprung",
+        "macos" => "data/Library/Application Support/Sprung",
+        _ => "data/sprung",
+    };
+    let library = Library::at(sandbox.path(folder));
     library.save(&mine, false).unwrap();
     std::fs::write(library.presets_folder().join("broken.toml"), "x").unwrap();
     let output = sandbox.sprung("presets list --own --json").assert().success().get_output().clone();
@@ -113,7 +117,10 @@ fn sounds_of_the_user_have_names_too() {
     sandbox.succeeds("render --note C4 --preset Kick -o b.wav");
     assert_eq!(sandbox.read("a.wav"), sandbox.read("b.wav"));
     // The preset's file is an input, so no output may replace it.
-    sandbox.fails("presets show MyKick --figure data/sprung/presets/mykick.toml --force", 1, "mykick.toml");
+    let mut replace = sandbox.sprung("render --note C4 --preset MyKick --force -o");
+    let output = replace.arg(library.presets_folder().join("mykick.toml")).assert().code(1).get_output().clone();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("mykick.toml: this is the input"), "{told}");
 }
 
 #[test]

@@ -69,8 +69,8 @@ impl Sandbox {
     /// `sprung` with these arguments, which are split at spaces.
     pub(crate) fn sprung(&self, args: &str) -> Command {
         let mut command = Command::cargo_bin("sprung").unwrap();
-        // Tests must not see the user's own sounds.
-        command.env("XDG_DATA_HOME", self.path("data"));
+        // Tests must not see the user's own sounds, wherever the system keeps them.
+        command.envs(["XDG_DATA_HOME", "APPDATA", "HOME"].map(|name| (name, self.path("data"))));
         command.current_dir(self.0.path()).args(args.split_whitespace());
         command
     }

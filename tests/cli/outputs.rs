@@ -1,6 +1,8 @@
 //! Destinations of WAVs: files, links, pipes, devices.
 
-use crate::{Sandbox, Wav, end, exists, note_on, song};
+#[cfg(unix)]
+use crate::exists;
+use crate::{Sandbox, Wav, end, note_on, song};
 use std::io::Read;
 use std::process::{Command, Stdio};
 

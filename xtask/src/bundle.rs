@@ -4,6 +4,7 @@ use crate::files::{copy, replace, write};
 use crate::patch;
 use crate::shell::{cargo, root, run_to_end};
 use crate::symbols;
+use crate::system::{Profile, System};
 use std::path::{Path, PathBuf};
 
 /// A plugin format.
@@ -24,9 +25,15 @@ impl Format {
         }
     }
 
+    /// What is signed of the bundle, as a path beside it: macOS signs folders, Windows files.
+    pub(crate) fn signed(self, system: &System) -> PathBuf {
+        let library = if system.name == "macos" { PathBuf::new() } else { self.library(system) };
+        [self.file_name().into(), library].iter().filter(|part| !part.as_os_str().is_empty()).collect()
+    }
+
     /// Path of the library within the bundle; empty if the library itself is the bundle.
-    fn library(self) -> PathBuf {
-        let (architecture, system) = (std::env::consts::ARCH, std::env::consts::OS);
+    fn library(self, system: &System) -> PathBuf {
+        let (architecture, system) = (&system.architecture[..], system.name);
         // VST 3 SDK, "VST 3 Locations and Format": Windows has its own name for 64-bit ARM.
         let architecture = if (system, architecture) == ("windows", "aarch64") { "arm64" } else { architecture };
         match (self, system) {
@@ -38,60 +45,51 @@ impl Format {
     }
 }
 
-/// Builds the plugin, writes the bundles into `target/bundled` and returns that folder.
-pub(crate) fn run(release: bool) -> Result<PathBuf, String> {
-    // Debug symbols are most of the library's size.
-    let (profile, linking) = if release { ("--release", "-- -C strip=symbols") } else { ("", "") };
+/// Builds the plugin for a system, writes the bundles into the folder `bundled` of what is made for it, and returns that folder.
+pub(crate) fn run(system: &System, profile: Profile) -> Result<PathBuf, String> {
     patch::run()?;
-    build(&format!(
-        "rustc --manifest-path plugin/Cargo.toml --lib --crate-type cdylib --target-dir target {profile} {linking}"
-    ))?;
-    let library = library(if release { "release" } else { "debug" });
-    if release {
+    let build = "rustc --manifest-path plugin/Cargo.toml --lib --crate-type cdylib";
+    let library = system.build(build, profile, &system.library(LIBRARY))?;
+    if profile == Profile::Release {
         symbols::check(&library)?;
     }
-    fill_all(&library)
+    fill_all(system, &library)
 }
+
+/// The plugin's library, as cargo calls it.
+const LIBRARY: &str = "sprung_plugin";
 
 /// The command that runs the plugin's own tests.
 pub(crate) const TESTS: &str = "test --manifest-path plugin/Cargo.toml --features standalone --no-fail-fast";
 
 /// Writes bundles with the library that [`TESTS`] builds, so that it is not compiled a second time with other features.
 pub(crate) fn of_the_tests() -> Result<PathBuf, String> {
-    build(&format!("{TESTS} --no-run"))?;
+    run_to_end(&mut cargo(&format!("{TESTS} --no-run")), "the plugin does not build")?;
+    let system = System::own();
     // Where cargo leaves what tests depend on.
-    fill_all(&library("debug/deps"))
+    fill_all(&system, &system.folder().join("debug/deps").join(system.library(LIBRARY)))
 }
 
-fn build(arguments: &str) -> Result<(), String> {
-    run_to_end(&mut cargo(arguments), "the plugin does not build")
-}
-
-/// The library that cargo has built in a profile's folder.
-fn library(folder: &str) -> PathBuf {
-    let name = format!("{}sprung_plugin{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    root().join("target").join(folder).join(name)
-}
-
-fn fill_all(library: &Path) -> Result<PathBuf, String> {
-    let folder = root().join("target/bundled");
+fn fill_all(system: &System, library: &Path) -> Result<PathBuf, String> {
+    let folder = system.folder().join("bundled");
     for format in Format::ALL {
         let bundle = folder.join(format.file_name());
-        replace(&bundle, |aside| fill(format, library, aside))?;
+        replace(&bundle, |aside| fill(format, system, library, aside))?;
         println!("{}", bundle.display());
     }
     Ok(folder)
 }
 
 /// Writes a bundle to a path where nothing exists yet.
-fn fill(format: Format, library: &Path, bundle: &Path) -> Result<(), String> {
-    let place = format.library();
+fn fill(format: Format, system: &System, library: &Path, bundle: &Path) -> Result<(), String> {
+    let place = format.library(system);
     if place.as_os_str().is_empty() {
         return copy(library, bundle);
     }
     copy(library, &bundle.join(place))?;
-    if cfg!(target_os = "macos") {
-        write(&bundle.join("Contents/Info.plist"), &property_list(format))?;
+    if system.name == "macos" {
+        let identifier = if matches!(format, Format::Clap) { "org.sprung.clap" } else { "org.sprung.vst3" };
+        write(&bundle.join("Contents/Info.plist"), &property_list(identifier, "BNDL"))?;
         write(&bundle.join("Contents/PkgInfo"), "BNDL????")?;
     }
     match format {
@@ -102,14 +100,14 @@ fn fill(format: Format, library: &Path, bundle: &Path) -> Result<(), String> {
     }
 }
 
-/// The property list that macOS requires in a bundle.
-fn property_list(format: Format) -> String {
+/// The property list that macOS requires in a bundle with the executable `Sprung`.
+pub(crate) fn property_list(identifier: &str, kind: &str) -> String {
     let keys = [
         ("CFBundleExecutable", "Sprung"),
-        ("CFBundleIdentifier", if matches!(format, Format::Clap) { "org.sprung.clap" } else { "org.sprung.vst3" }),
+        ("CFBundleIdentifier", identifier),
         ("CFBundleInfoDictionaryVersion", "6.0"),
         ("CFBundleName", "Sprung"),
-        ("CFBundlePackageType", "BNDL"),
+        ("CFBundlePackageType", kind),
         ("CFBundleShortVersionString", env!("CARGO_PKG_VERSION")),
         ("CFBundleSignature", "????"),
         ("CFBundleVersion", env!("CARGO_PKG_VERSION")),
@@ -121,4 +119,34 @@ fn property_list(format: Format) -> String {
          \"http://www.apple.com/DTDs/PropertyList-1.0.dtd\">\n<plist version=\"1.0\">\n<dict>\n{entries}\
          \x20   <key>NSHighResolutionCapable</key>\n    <true/>\n</dict>\n</plist>\n"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::remove;
+
+    #[test]
+    fn bundles_have_the_layout_of_their_system() {
+        let folder = root().join("target/tmp").join(format!("layouts-{}", std::process::id()));
+        write(&folder.join("library"), "code").unwrap();
+        for (triple, clap, vst3) in [
+            ("x86_64-unknown-linux-gnu", "", "Contents/x86_64-linux/Sprung.so"),
+            ("x86_64-pc-windows-gnu", "", "Contents/x86_64-win/Sprung.vst3"),
+            ("aarch64-pc-windows-msvc", "", "Contents/arm64-win/Sprung.vst3"),
+            ("universal2-apple-darwin", "Contents/MacOS/Sprung", "Contents/MacOS/Sprung"),
+        ] {
+            let system = System::of(Some(triple)).unwrap();
+            for (format, library) in [(Format::Clap, clap), (Format::Vst3, vst3)] {
+                let bundle = folder.join(triple).join(format.file_name());
+                fill(format, &system, &folder.join("library"), &bundle).unwrap();
+                // A path that ends with a slash is no file.
+                let library = if library.is_empty() { bundle.clone() } else { bundle.join(library) };
+                assert_eq!(std::fs::read_to_string(library).unwrap(), "code", "{triple}");
+                let list = std::fs::read_to_string(bundle.join("Contents/Info.plist"));
+                assert_eq!(list.is_ok_and(|list| list.contains("<string>BNDL</string>")), system.name == "macos");
+            }
+        }
+        remove(&folder).unwrap();
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::bundle::{self, Format};
 use crate::files;
+use crate::system::{Profile, System};
 use std::path::PathBuf;
 
 /// For which users the plugin is installed.
@@ -34,7 +35,7 @@ fn folder(format: Format, scope: Scope) -> Result<PathBuf, String> {
 /// Builds the plugin for release and copies it to the folders in which DAWs look.
 pub(crate) fn install(scope: Scope) -> Result<(), String> {
     let folders = Format::ALL.map(|format| folder(format, scope).map(|folder| (format, folder)));
-    let bundles = bundle::run(true)?;
+    let bundles = bundle::run(&System::own(), Profile::Release)?;
     for place in folders {
         let (format, folder) = place?;
         let to = folder.join(format.file_name());

@@ -8,6 +8,7 @@ mod dist;
 mod engine;
 mod files;
 mod install;
+mod notes;
 mod package;
 mod patch;
 mod python;
@@ -17,12 +18,15 @@ mod shell;
 mod standalone;
 mod steps;
 mod symbols;
+mod system;
 mod test;
+mod wine;
 
 use clap::{Parser, Subcommand};
 use install::Scope;
 use std::process::ExitCode;
 use steps::Suite;
+use system::{Profile, System};
 
 /// The project's chores.
 #[derive(Parser)]
@@ -40,11 +44,13 @@ enum Chore {
     Test(Extent),
     /// Put the plugin's wrapper, with our corrections, where cargo finds it in the folder `plugin`. Other chores do it too.
     Patch,
-    /// Build the plugin and put Sprung.clap and Sprung.vst3 into target/bundled.
+    /// Build the plugin and put Sprung.clap and Sprung.vst3 into target/bundled, for another system into target/TRIPLE/bundled.
     Bundle {
         /// Optimised, as it is to be played.
         #[arg(long)]
         release: bool,
+        #[command(flatten)]
+        target: Target,
     },
     /// Build the plugin for release and copy it to where DAWs look.
     Install(Place),
@@ -61,7 +67,7 @@ enum Chore {
         /// Only this case; `pictures` for what the plugin's window looks like.
         case: Option<String>,
     },
-    /// Make what users download: an archive, a Debian package, and their checksums, in target/dist.
+    /// Make what users download, in target/dist: an archive, an installer, and their checksums.
     Dist {
         /// Leave the plugin out.
         #[arg(long)]
@@ -72,6 +78,13 @@ enum Chore {
         /// Install what was made into an empty system and an empty virtual environment, and render with it.
         #[arg(long = "try")]
         trial: bool,
+        #[command(flatten)]
+        target: Target,
+    },
+    /// Print what the changelog says of a version, for its release.
+    Notes {
+        /// Such as 0.1.0.
+        version: String,
     },
     /// Time `sprung batch` beside Python's plugin hosts on the same notes, and print a table of it.
     BatchTable {
@@ -97,6 +110,20 @@ impl Extent {
 }
 
 #[derive(clap::Args)]
+struct Target {
+    /// The system to build for, as the compiler calls it, such as x86_64-pc-windows-gnu, or universal2-apple-darwin for both
+    /// CPUs of Apple's [default: this one]
+    #[arg(long, value_name = "TRIPLE")]
+    target: Option<String>,
+}
+
+impl Target {
+    fn system(&self) -> Result<System, String> {
+        System::of(self.target.as_deref())
+    }
+}
+
+#[derive(clap::Args)]
 struct Place {
     /// For this user alone (the default).
     #[arg(long)]
@@ -117,12 +144,18 @@ fn main() -> ExitCode {
         Chore::Setup(extent) => setup::run(extent.suite()),
         Chore::Test(extent) => test::run(extent.suite()),
         Chore::Patch => patch::run().map(drop),
-        Chore::Bundle { release } => bundle::run(release).map(drop),
+        Chore::Bundle { release, target } => {
+            let profile = if release { Profile::Release } else { Profile::Debug };
+            target.system().and_then(|system| bundle::run(&system, profile)).map(drop)
+        }
         Chore::Install(place) => install::install(place.scope()),
         Chore::Standalone { arguments } => standalone::run(&arguments),
         Chore::Uninstall(place) => install::uninstall(place.scope()),
         Chore::Bless { case } => bless::run(case.as_deref()),
-        Chore::Dist { no_plugin, wheel, trial } => dist::run(&dist::Options { no_plugin, wheel, trial }),
+        Chore::Dist { no_plugin, wheel, trial, target } => {
+            target.system().and_then(|system| dist::run(&dist::Options { no_plugin, wheel, trial, system }))
+        }
+        Chore::Notes { version } => notes::run(&version),
         Chore::BatchTable { sounds } => batch_table::run(sounds),
         Chore::Engine(chore) => engine::run(&chore),
     };

@@ -1,25 +1,32 @@
 //! Builds the Python package, and runs its tests in the virtual environment under the target directory.
 
 use crate::count::Count;
+use crate::python;
 use crate::shell::{cargo, root, run_and_read, run_to_end};
+use crate::system::System;
 use std::process::Command;
 
 /// Builds the package into its folder and runs its tests, with a command that is built from the same sources. The check of types
 /// counts as one.
 pub(crate) fn test() -> Result<Count, String> {
-    let python = root().join("target/python/bin/python");
+    let python = python::of(&root().join("target/python"), "python");
     let folder = root().join("src/python");
     // With the features that the tests of the other packages have, and those of what they alone need, so that nothing is compiled
     // again.
     let mut build = cargo("build --workspace --all-features --lib --bins --tests");
     run_to_end(build.env("PYO3_BUILD_EXTENSION_MODULE", "1"), "the package does not build")?;
-    let (library, module) = (root().join("target/debug/lib_sprung.so"), folder.join("sprung/_sprung.abi3.so"));
+    let system = System::own();
+    // As Python calls modules in a library of the system's.
+    let module = folder.join("sprung").join(if cfg!(windows) { "_sprung.pyd" } else { "_sprung.abi3.so" });
+    let library = root().join("target/debug").join(system.library("_sprung"));
     std::fs::copy(&library, &module).map_err(|error| format!("{}: {error}", library.display()))?;
 
     let run = |arguments: &[&str]| {
         let mut command = Command::new(&python);
         command.args(arguments).current_dir(&folder);
-        command.env("PYTHONPATH", &folder).env("SPRUNG_COMMAND", root().join("target/debug/sprung"));
+        command
+            .env("PYTHONPATH", &folder)
+            .env("SPRUNG_COMMAND", root().join("target/debug").join(system.program("sprung")));
         run_and_read(command)
     };
     let (typed, _) = run(&["-m", "mypy"])?;

@@ -1,8 +1,19 @@
 //! Installs the plugin hosts driven from Python, and the modules for the Python package's tests, in a virtual environment.
 
 use crate::shell::{root, succeeds};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+
+/// The system's Python.
+pub(crate) const PROGRAM: &str = if cfg!(windows) { "python" } else { "python3" };
+
+/// A program of a virtual environment.
+pub(crate) fn of(environment: &Path, program: &str) -> PathBuf {
+    match cfg!(windows) {
+        true => environment.join("Scripts").join(format!("{program}.exe")),
+        false => environment.join("bin").join(program),
+    }
+}
 
 /// The files with the pinned versions.
 const REQUIREMENTS: [&str; 2] = ["plugin/tests/hosts/requirements.txt", "src/python/tests/requirements.txt"];
@@ -19,7 +30,7 @@ pub(crate) fn install() -> Result<(), String> {
         return Ok(());
     }
     println!("installing into {}: {}", folder.display(), text.lines().collect::<Vec<_>>().join(", "));
-    if !succeeds("python3", &["-m", "venv", "--clear", &folder.to_string_lossy()]) {
+    if !succeeds(PROGRAM, &["-m", "venv", "--clear", &folder.to_string_lossy()]) {
         return Err("there is no Python that makes virtual environments (python3-venv)".to_owned());
     }
     pip(&folder)?;
@@ -27,7 +38,7 @@ pub(crate) fn install() -> Result<(), String> {
 }
 
 fn pip(folder: &Path) -> Result<(), String> {
-    let status = Command::new(folder.join("bin/python"))
+    let status = Command::new(of(folder, "python"))
         .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--only-binary=:all:"])
         .args(REQUIREMENTS.iter().flat_map(|file| ["--requirement".into(), root().join(file)]))
         .status();

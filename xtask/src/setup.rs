@@ -2,7 +2,8 @@
 
 use crate::python;
 use crate::shell::{has_standard_library, succeeds};
-use crate::steps::Suite;
+use crate::steps::{CHECKED, Suite};
+use crate::wine;
 use std::path::Path;
 use std::process::Command;
 
@@ -39,6 +40,7 @@ struct Requirement {
 const WINDOW: &str = "the plugin's window loads it";
 const DAWDREAMER: &str = "dawdreamer loads it";
 const RECORDINGS: &str = "recordings of real instruments, to which presets are fitted";
+const WINDOWS: &str = "runs what is built for Windows";
 const SCREEN_READER: &str = "a bus on which the plugin's window is read as by a screen reader";
 
 const REQUIREMENTS: &[Requirement] = &[
@@ -142,6 +144,20 @@ const REQUIREMENTS: &[Requirement] = &[
         why: "counts instructions, so that speed is watched on busy machines",
         suite: Suite::All,
     },
+    Requirement {
+        probe: Probe::OnPath("openbox"),
+        package: "openbox",
+        why: "gives the focus to windows in Wine",
+        suite: Suite::All,
+    },
+    Requirement { probe: Probe::Program("wine"), package: "wine", why: WINDOWS, suite: Suite::All },
+    Requirement { probe: Probe::File("/usr/lib/wine/wine64"), package: "wine64", why: WINDOWS, suite: Suite::All },
+    Requirement {
+        probe: Probe::Program("x86_64-w64-mingw32-gcc"),
+        package: "gcc-mingw-w64-x86-64-posix",
+        why: "links programs for Windows",
+        suite: Suite::All,
+    },
     Requirement { probe: Probe::OnPath("fluidsynth"), package: "fluidsynth", why: RECORDINGS, suite: Suite::All },
     Requirement {
         probe: Probe::File("/usr/share/sounds/sf2/FluidR3_GM.sf2"),
@@ -159,9 +175,6 @@ const REQUIREMENTS: &[Requirement] = &[
 
 /// Components of the Rust toolchain, each with the cargo command that it provides.
 const COMPONENTS: [(&str, &str); 2] = [("rustfmt", "fmt"), ("clippy", "clippy")];
-
-/// Windows, as Rust calls it: the plugin's corrections for it are compiled, not run.
-pub(crate) const WINDOWS: &str = "x86_64-pc-windows-gnu";
 
 impl Requirement {
     fn is_met(&self) -> bool {
@@ -197,15 +210,20 @@ pub(crate) fn run(suite: Suite) -> Result<(), String> {
         }
     }
     if suite == Suite::All {
-        if !has_standard_library(WINDOWS, None) && !succeeds("rustup", &["target", "add", WINDOWS]) {
-            problems.push(format!("install it with: rustup target add {WINDOWS}"));
+        for target in CHECKED.into_iter().chain([wine::TARGET]) {
+            if !has_standard_library(target, None) && !succeeds("rustup", &["target", "add", target]) {
+                problems.push(format!("install it with: rustup target add {target}"));
+            }
         }
         if !succeeds("cargo", &["hack", "--version"]) && !succeeds("cargo", &["install", "--locked", "cargo-hack"]) {
             problems.push("install it with: cargo install --locked cargo-hack".to_owned());
         }
     }
+    // They are Debian's packages. Elsewhere the tests that need them are left out.
     let is_missing = |requirement: &&Requirement| {
-        (requirement.suite == Suite::Commit || suite == Suite::All) && !requirement.is_met()
+        cfg!(target_os = "linux")
+            && (requirement.suite == Suite::Commit || suite == Suite::All)
+            && !requirement.is_met()
     };
     let missing: Vec<&Requirement> = REQUIREMENTS.iter().filter(is_missing).collect();
     for Requirement { package, why, .. } in &missing {

@@ -87,3 +87,13 @@ pub(crate) const LONG: &[Step] = &[
     },
     tests("instructions", &["xtask callgrind"]),
 ];
+
+/// The tests that need nothing of Linux: of samples and command, and of the plugin in hosts. They are all that runs elsewhere.
+pub(crate) const ELSEWHERE: [&str; 2] = [
+    "test --package sprung --package sprung-cli --features sprung/batch,sprung/lab --no-fail-fast \
+     --test golden --test cli",
+    "test --manifest-path plugin/Cargo.toml --no-fail-fast --test hosts",
+];
+
+/// Systems on which nothing can be run here: the types of all parts are checked for them, by the compiler's names.
+pub(crate) const CHECKED: [&str; 3] = ["aarch64-apple-darwin", "x86_64-apple-darwin", "x86_64-pc-windows-msvc"];

@@ -1,8 +1,10 @@
 //! `cargo xtask test`: runs a suite, step by step, and counts what was really run.
 
 use crate::count::{Count, Shows};
-use crate::shell::{cargo, has_standard_library, run_and_read, succeeds};
-use crate::steps::{CHECKS, EXAMPLES, LONG, Step, Suite};
+use crate::shell::{cargo, root, run_and_read, succeeds};
+use crate::steps::{CHECKED, CHECKS, ELSEWHERE, EXAMPLES, LONG, Step, Suite};
+use crate::system::{Profile, System};
+use crate::wine::{self, Prefix};
 use crate::{bundle, package, patch, setup};
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -27,7 +29,8 @@ pub(crate) fn run(suite: Suite) -> Result<(), String> {
     outcomes.push(timed("Python package", package::test));
     if suite == Suite::All {
         outcomes.extend(LONG.iter().map(|step| timed(step.name, || step.run())));
-        outcomes.push(timed("corrections for Windows", corrections_for_windows));
+        outcomes.push(timed("Windows, by Wine", windows));
+        outcomes.push(timed("other systems' types", types));
     }
 
     println!("\n{:<24} {:<8} {:>9}  ran", "step", "result", "time");
@@ -44,6 +47,9 @@ pub(crate) fn run(suite: Suite) -> Result<(), String> {
 /// Runs the tests of all packages but the plugin: with nextest, which needs no program to end before the next begins, or with the
 /// harness where it is missing.
 fn tests(suite: Suite) -> Result<Count, String> {
+    if !cfg!(target_os = "linux") {
+        return count(cargo(ELSEWHERE[0]), Shows::Tests);
+    }
     let has_nextest = succeeds("cargo", &["nextest", "--version"]);
     let command = match (has_nextest, suite) {
         (true, Suite::Commit) => "nextest run --workspace --all-features --no-fail-fast --status-level fail",
@@ -60,7 +66,13 @@ fn tests(suite: Suite) -> Result<Count, String> {
 
 /// Runs the plugin's own tests and those of the program, and tests the bundles that musicians install in real hosts.
 fn plugin(suite: Suite) -> Result<Count, String> {
-    let folder = if suite == Suite::All { bundle::run(true) } else { bundle::of_the_tests() }?;
+    if !cfg!(target_os = "linux") {
+        let mut command = cargo(ELSEWHERE[1]);
+        command.env("SPRUNG_BUNDLES", bundle::run(&System::own(), Profile::Debug)?);
+        return count(command, Shows::Tests);
+    }
+    let folder =
+        if suite == Suite::All { bundle::run(&System::own(), Profile::Release) } else { bundle::of_the_tests() }?;
     let mut command = cargo(bundle::TESTS);
     command.env("SPRUNG_BUNDLES", folder);
     if suite == Suite::All {
@@ -69,16 +81,32 @@ fn plugin(suite: Suite) -> Result<Count, String> {
     count(command, Shows::Tests)
 }
 
-/// Compiles the packages with corrections that no other system compiles.
-fn corrections_for_windows() -> Result<Count, String> {
-    let target = setup::WINDOWS;
-    if !has_standard_library(target, None) {
-        return Err(format!("Rust’s standard library for {target} is missing: rustup target add {target}"));
+/// Builds the command and the plugin for Windows, and runs the golden tests, those of the command and those of the plugin in hosts
+/// and in its window.
+fn windows() -> Result<Count, String> {
+    let wine = Prefix::of_tests()?;
+    let mut total = Count::default();
+    for tests in ELSEWHERE {
+        let mut command = cargo(tests);
+        command.args(["--target", wine::TARGET]);
+        wine.lend_to_cargo(&mut command);
+        total.add(count(command, Shows::Tests)?);
     }
-    let check = "check --manifest-path plugin/Cargo.toml --package baseview --package egui-baseview --target";
-    let mut command = cargo(check);
-    command.arg(target);
-    count(command, Shows::OneCheck)
+    total.add(count(Command::new(root().join("plugin/tests/windows.sh")), Shows::OneCheck)?);
+    Ok(total)
+}
+
+/// Checks the types of all parts for systems on which nothing can be run here.
+fn types() -> Result<Count, String> {
+    let mut total = Count::default();
+    for system in CHECKED {
+        for check in ["check --workspace --all-features", "check --manifest-path plugin/Cargo.toml --all-features"] {
+            let mut command = cargo(check);
+            command.args(["--target", system]);
+            total.add(count(command, Shows::OneCheck)?);
+        }
+    }
+    Ok(total)
 }
 
 fn count(command: Command, shows: Shows) -> Result<Count, String> {

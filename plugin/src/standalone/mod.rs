@@ -9,8 +9,11 @@
 //! | `store` | the files of the state and of the choice of devices |
 //! | `signals` | Ctrl-C |
 //! | `messages` | messages for the user |
+//! | `console` | where they go on Windows |
 
 mod chosen;
+#[cfg(windows)]
+mod console;
 mod host;
 mod messages;
 mod player;
@@ -54,7 +57,7 @@ struct Args {
     /// Sound device, by its name or a part of it. See --list [default: that of the last time, or the system's]
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
-    /// Sound system: alsa, jack or another that --list shows
+    /// Sound system, such as alsa, jack, wasapi or coreaudio: --list shows those that are here
     #[arg(long, value_name = "NAME")]
     host: Option<String>,
     /// Sample rate in Hz [default: 48000 if the device has it]
@@ -71,10 +74,14 @@ struct Args {
 /// Runs the program with the arguments of its command line, until its window is closed.
 #[must_use]
 pub fn run() -> ExitCode {
+    #[cfg(windows)]
+    console::attach();
     match start(Args::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             print(&format!("error: {error}"));
+            #[cfg(windows)]
+            console::show(&error);
             ExitCode::FAILURE
         }
     }

@@ -294,7 +294,11 @@ mod tests {
             let variable = |name: &str| variables.iter().find(|(known, _)| *known == name).map(|(_, path)| path.into());
             folder(&variable)
         };
-        if cfg!(target_os = "linux") {
+        if cfg!(windows) {
+            assert_eq!(find(&[("LOCALAPPDATA", r"C:\h\Local")]), Some(r"C:\h\Local\Sprung".into()));
+        } else if cfg!(target_os = "macos") {
+            assert_eq!(find(&[("HOME", "/h")]), Some("/h/Library/Application Support/Sprung".into()));
+        } else {
             assert_eq!(find(&[("XDG_STATE_HOME", "/s"), ("HOME", "/h")]), Some("/s/sprung".into()));
             assert_eq!(find(&[("XDG_STATE_HOME", "s"), ("HOME", "/h")]), Some("/h/.local/state/sprung".into()));
         }

@@ -1,46 +1,69 @@
 //! The plugin in real hosts: CLAP in clack; VST3 in pedalboard, dawdreamer and our own host; windows under Xvfb.
 //!
-//! `plugin/tests/README.md` lists what is covered and where.
+//! What needs the system's loader, screen or Python is tested on Linux alone. `plugin/tests/README.md` lists what is covered and
+//! where.
 
 mod automation;
+#[cfg(target_os = "linux")]
 mod cpu;
 mod damage;
+#[cfg(target_os = "linux")]
 mod devices;
+#[cfg(target_os = "linux")]
 mod drag;
+#[cfg(target_os = "linux")]
 mod drops;
 mod expression;
 mod fuzz;
+#[cfg(target_os = "linux")]
 mod growth;
+#[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "tests on Linux use more of it"))]
 mod host;
+#[cfg(target_os = "linux")]
 mod host_menu;
 mod lifecycle;
+#[cfg(target_os = "linux")]
 mod minutes;
 mod notes;
 mod parameters;
 mod patches;
+#[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "tests on Linux use more of it"))]
 mod phrase;
+#[cfg(target_os = "linux")]
 mod pixels;
+#[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "tests on Linux use more of it"))]
 mod process;
+#[cfg(target_os = "linux")]
 mod realtime;
 mod scan;
+#[cfg(target_os = "linux")]
 mod screen;
+#[cfg(target_os = "linux")]
 mod screen_reader;
+#[cfg(target_os = "linux")]
 mod sizes;
 mod song;
+#[cfg(target_os = "linux")]
 mod standalone;
 mod state;
+#[cfg(target_os = "linux")]
 mod storm;
+#[cfg(target_os = "linux")]
 mod vst3;
+#[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "tests on Linux use more of it"))]
 mod vst3_host;
 mod vst3_state;
+#[cfg(target_os = "linux")]
 mod window;
 
 use libtest_mimic::{Arguments, Trial};
 use std::process::ExitCode;
+#[cfg(target_os = "linux")]
 use std::sync::LazyLock;
 
 /// What a test needs besides Rust.
 #[derive(Clone, Copy)]
+#[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "elsewhere, tests need nothing"))]
 enum Needs {
     Nothing,
     /// A virtual screen (Xvfb).
@@ -61,7 +84,13 @@ impl Needs {
         !matches!(self, Needs::Nothing | Needs::Python)
     }
 
+    #[cfg(not(target_os = "linux"))]
+    fn missing(self) -> Option<String> {
+        None
+    }
+
     /// The first need that is missing on this machine; `None` if all are met.
+    #[cfg(target_os = "linux")]
     fn missing(self) -> Option<String> {
         static SCREEN: LazyLock<Option<String>> = LazyLock::new(screen::missing);
         static PYTHON: LazyLock<Option<String>> = LazyLock::new(vst3::missing);
@@ -84,6 +113,7 @@ macro_rules! trials {
 }
 
 fn main() -> ExitCode {
+    #[cfg(target_os = "linux")]
     if let Some(work) = process::work() {
         return match work.as_str() {
             "growth" | "reopen" => growth::work(&work),
@@ -97,7 +127,7 @@ fn main() -> ExitCode {
             _ => realtime::work(&work),
         };
     }
-    let trials = trials! {
+    let everywhere = trials! {
         Nothing: scan {
             the_descriptor_is_complete
             no_other_plugin_is_made
@@ -180,6 +210,15 @@ fn main() -> ExitCode {
             sound_that_comes_in_has_the_bits_of_the_command
             sixteen_channels_have_the_bits_of_one_synth
         }
+        Nothing: vst3_state {
+            parameters_have_the_numbers_of_their_ids
+            states_of_all_versions_load
+        }
+    };
+    #[cfg(not(target_os = "linux"))]
+    let on_linux = vec![];
+    #[cfg(target_os = "linux")]
+    let on_linux = trials! {
         Nothing: growth {
             a_thousand_instances_leave_nothing_behind
             the_library_can_be_opened_and_closed_again
@@ -233,10 +272,6 @@ fn main() -> ExitCode {
         Program: drops {
             a_recording_that_is_dropped_on_the_real_window_becomes_the_sound
         }
-        Nothing: vst3_state {
-            parameters_have_the_numbers_of_their_ids
-            states_of_all_versions_load
-        }
         Nothing: storm {
             instances_end_while_their_changes_are_told
         }
@@ -264,7 +299,8 @@ fn main() -> ExitCode {
         };
         Trial::test(name, run).with_ignored_flag(needs.wait())
     };
-    let conclusion = libtest_mimic::run(&Arguments::from_args(), trials.into_iter().map(trial).collect());
+    let conclusion =
+        libtest_mimic::run(&Arguments::from_args(), everywhere.into_iter().chain(on_linux).map(trial).collect());
     host::bundle::remove();
     conclusion.exit_code()
 }

@@ -56,14 +56,20 @@ pub(crate) fn no_other_plugin_is_made() {
 /// Symbols that are missing on the system must be found here, not when a musician plays.
 #[allow(unsafe_code)]
 pub(crate) fn all_symbols_are_found_at_once() {
-    let path = std::ffi::CString::new(bundle::clap().to_str().unwrap()).unwrap();
+    #[cfg(unix)]
+    use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
+    #[cfg(windows)]
+    use libloading::os::windows::Library;
+    let path = bundle::clap();
     // SAFETY: the library is our own, and loading it runs only its usual constructors.
-    let (handle, entry) = unsafe {
-        let handle = libc::dlopen(path.as_ptr(), libc::RTLD_NOW | libc::RTLD_LOCAL);
-        (handle, if handle.is_null() { handle } else { libc::dlsym(handle, c"clap_entry".as_ptr()) })
-    };
-    assert!(!handle.is_null(), "the library does not load");
-    assert!(!entry.is_null(), "it has no clap_entry");
+    #[cfg(unix)]
+    let library = unsafe { Library::open(Some(path), RTLD_NOW | RTLD_LOCAL) };
+    // SAFETY: as above.
+    #[cfg(windows)]
+    let library = unsafe { Library::new(path) };
+    let library = library.expect("the library loads");
+    // SAFETY: the address is not used.
+    assert!(unsafe { library.get::<*const ()>(b"clap_entry") }.is_ok(), "it has no clap_entry");
 }
 
 /// They are 3 MB. A constant's texts may be stored several times.

@@ -1,4 +1,4 @@
-/* A CLAP host for Windows that clicks in the plugin's window, presses keys, and says which of them it has heard. */
+/* A CLAP host for Windows that opens the plugin's window twenty times, clicks in it, presses keys, and says which it has heard. */
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -130,6 +130,17 @@ int main(int count, char **arguments) {
   outer = CreateWindowW(L"keys", L"keys", WS_OVERLAPPEDWINDOW | WS_VISIBLE, 20, 20, 1120, 740, NULL, NULL, class.hInstance, NULL);
   const gui *view = instance->get_extension(instance, "clap.gui");
   window parent = {"win32", outer};
+  int opened = 0, left = 0;
+  for (int times = 0; times < 20; times++) {
+    if (!view->create(instance, "win32", false) || !view->set_parent(instance, &parent)) break;
+    view->show(instance);
+    run(times % 4 * 100);
+    opened += GetWindow(outer, GW_CHILD) != NULL;
+    view->destroy(instance);
+    left += GetWindow(outer, GW_CHILD) != NULL;
+  }
+  printf("the window opened %d times and stayed %d times\n", opened, left);
+  wrong += opened != 20 || left != 0;
   if (!view->create(instance, "win32", false) || !view->set_parent(instance, &parent)) return printf("no window\n"), 2;
   view->show(instance);
   inner = GetWindow(outer, GW_CHILD);

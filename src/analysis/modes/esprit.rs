@@ -5,7 +5,7 @@
 //!
 //! The filter only uses samples after the first one, where a sum of damped sinusoids stays such a sum.
 
-use super::pole::Pole;
+use super::pole::{Pole, magnitude};
 use libm::{atan2, log, log2, sqrt};
 use nalgebra::{DMatrix, Schur, SymmetricEigen};
 use realfft::num_complex::Complex;
@@ -125,7 +125,7 @@ impl Band {
 
     /// The pole of a factor from one of the band's samples to the next; none if it lies outside the band or grows.
     fn pole(&self, turn: Complex<f64>) -> Option<Pole> {
-        let (radius, angle) = (turn.norm(), atan2(turn.im, turn.re));
+        let (radius, angle) = (magnitude(turn), atan2(turn.im, turn.re));
         let inside = angle.abs() < 2.0 * PI * PASS * 1.05 && radius > 1e-6;
         let grows = log(radius.max(1e-9)) * self.count as f64 > 1.0;
         let pole =

@@ -4,7 +4,7 @@
 //! projection, Golub & Pereyra 1973). A step needs only two sums over the samples for each pole. Products of two modes
 //! are sums of powers, which have a closed form.
 
-use super::pole::{Ladder, Pole, add, correlations};
+use super::pole::{Ladder, Pole, add, correlations, magnitude};
 use crate::analysis::level;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use realfft::num_complex::Complex;
@@ -237,7 +237,7 @@ impl Fit {
             let mut most: f64 = 0.0;
             let moved = self.poles.iter().zip(&step).map(|(pole, step)| {
                 let width = pole.width(len);
-                let size = step.norm() / len as f64 / width;
+                let size = magnitude(*step) / len as f64 / width;
                 most = most.max(size);
                 let scale = if size > LONGEST_STEP { LONGEST_STEP / size } else { 1.0 } / len as f64;
                 Pole {

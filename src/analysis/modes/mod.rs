@@ -52,7 +52,7 @@ use fit::Fit;
 use groups::groups;
 use libm::{log10, sqrt};
 use plausible::{AUDIBLE, Limits};
-use pole::add;
+use pole::{add, magnitude};
 use std::f64::consts::{LN_10, PI};
 use strikes::{BLOCK, Stretch, strikes};
 
@@ -248,7 +248,7 @@ fn strike(found: &search::Found, fits: &[Option<Fit>], sound: &[f64], stretch: &
         let pole = found.fit.poles[k];
         let at_onset = |fit: &Fit| {
             let amplitude = fit.amplitudes[k];
-            let level = dbfs(amplitude.norm()) + 20.0 / LN_10 * pole.decay * late;
+            let level = dbfs(magnitude(amplitude)) + 20.0 / LN_10 * pole.decay * late;
             let cosine = libm::atan2(amplitude.im, amplitude.re) - pole.theta * late;
             (level, libm::remainder(cosine + 0.5 * PI, 2.0 * PI))
         };

@@ -4,7 +4,7 @@
 //! other. Such modes explain much, so they stand out of noise, but they have no meaning for the sound.
 
 use super::fit::{Certainty, Fit};
-use super::pole::Pole;
+use super::pole::{Pole, magnitude};
 use crate::sound::bodies::LN_1000;
 use libm::{exp, sqrt};
 use std::f64::consts::PI;
@@ -79,13 +79,13 @@ pub(super) fn implausible(
     };
     let reach = |k: usize, other: usize| fit.poles[k].width(len) + fit.poles[other].width(len);
     let distance = |k: usize, other: usize| (fit.poles[k].theta - fit.poles[other].theta).abs();
-    let excess = |k: usize| limits.excess(fit.poles[k], fit.amplitudes[k].norm());
+    let excess = |k: usize| limits.excess(fit.poles[k], magnitude(fit.amplitudes[k]));
     // What the sound cannot have itself, such as a short burst of a thousand times its peak, hides nothing.
     let hides = |k: usize| limits.rings(fit.poles[k]) && excess(k) <= 1.0;
     let is_on_a_skirt = |k: usize| {
         let is_of = |other: usize| {
             hides(other)
-                && fit.amplitudes[k].norm() < SKIRT * fit.amplitudes[other].norm()
+                && magnitude(fit.amplitudes[k]) < SKIRT * magnitude(fit.amplitudes[other])
                 && distance(k, other) < BESIDE * reach(k, other)
         };
         (0..fit.poles.len()).any(is_of)

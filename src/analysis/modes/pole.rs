@@ -52,6 +52,11 @@ impl Pole {
     }
 }
 
+/// `|z|`. `Complex::norm` calls the system's library, whose last bit differs from system to system.
+pub(super) fn magnitude(z: Complex<f64>) -> f64 {
+    libm::hypot(z.re, z.im)
+}
+
 /// `Σ y·z̄ⁿ` and `Σ τ·y·z̄ⁿ` with `τ = n/len`, for each pole.
 pub(super) fn correlations(samples: &[f64], poles: &[Pole]) -> Vec<[Complex<f64>; 2]> {
     // Poles that ring about as long go side by side, since a group takes as long as its longest.

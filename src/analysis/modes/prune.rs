@@ -2,6 +2,7 @@
 
 use super::detect::{Planner, Spectra};
 use super::fit::{Fit, Inverses, energy};
+use super::pole::magnitude;
 use nalgebra::DMatrix;
 use realfft::num_complex::Complex;
 
@@ -98,7 +99,7 @@ fn coinciding(fit: &Fit, len: usize) -> Vec<(usize, usize)> {
     let mut order: Vec<usize> = (0..fit.poles.len()).collect();
     order.sort_by(|a, b| fit.poles[*a].theta.total_cmp(&fit.poles[*b].theta));
     let near = |pair: &&[usize]| fit.poles[pair[0]].coincides(fit.poles[pair[1]], len);
-    let strength = |k: usize| fit.amplitudes[k].norm();
+    let strength = |k: usize| magnitude(fit.amplitudes[k]);
     let ordered = |pair: &[usize]| match strength(pair[0]) < strength(pair[1]) {
         true => (pair[1], pair[0]),
         false => (pair[0], pair[1]),

@@ -1,11 +1,11 @@
 //! Writes the outputs of the lab's commands: a figure, a table of numbers as CSV, and a table as text.
 
 use super::super::interrupt;
-use super::super::terminal::{complain_lines, print};
+use super::super::terminal::{complain_lines, is_closed, print};
 use sprung::figure::{self, Picture};
 use sprung::io::{Inputs, Output, Target};
 use sprung::{Error, Result};
-use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
+use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// The options of every command's output.
@@ -105,7 +105,7 @@ impl Deliveries {
         if let Some(mut output) = self.csv {
             match write(&mut output, csv) {
                 // A reader such as `head` may close the pipe when it has enough. That is no error.
-                Err(Error::Io { source, .. }) if self.to_stdout && source.kind() == ErrorKind::BrokenPipe => (),
+                Err(Error::Io { source, .. }) if self.to_stdout && is_closed(&source) => (),
                 written => written?,
             }
             whole.push(output);

@@ -135,13 +135,19 @@ fn favourites_are_kept() {
     assert_eq!(fs::read(library.favourites_file()).unwrap(), b"Kick\n\xff\n", "not written over");
 }
 
-#[cfg(all(unix, not(target_os = "macos")))]
 #[test]
 fn the_folder_is_where_the_system_keeps_data() {
     let find = |variables: &[(&str, &str)]| {
         data_folder(&|name| variables.iter().find(|(known, _)| *known == name).map(|(_, value)| value.into()))
     };
-    assert_eq!(find(&[("XDG_DATA_HOME", "/d"), ("HOME", "/h")]), Some("/d/sprung".into()));
-    assert_eq!(find(&[("XDG_DATA_HOME", "d"), ("HOME", "/h")]), Some("/h/.local/share/sprung".into()));
+    if cfg!(windows) {
+        assert_eq!(find(&[("APPDATA", r"C:\h\Roaming")]), Some(r"C:\h\Roaming\Sprung".into()));
+        assert_eq!(find(&[("APPDATA", "Roaming")]), None, "a relative path is ignored");
+    } else if cfg!(target_os = "macos") {
+        assert_eq!(find(&[("HOME", "/h")]), Some("/h/Library/Application Support/Sprung".into()));
+    } else {
+        assert_eq!(find(&[("XDG_DATA_HOME", "/d"), ("HOME", "/h")]), Some("/d/sprung".into()));
+        assert_eq!(find(&[("XDG_DATA_HOME", "d"), ("HOME", "/h")]), Some("/h/.local/share/sprung".into()));
+    }
     assert_eq!(find(&[]), None);
 }

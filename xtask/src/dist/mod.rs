@@ -1,13 +1,20 @@
-//! `cargo xtask dist`: makes the downloads in `target/dist`: an archive, a Debian package, a wheel for Python, and checksums.
+//! `cargo xtask dist`: makes the downloads in `dist`: an archive, an installer, a wheel for Python, and checksums.
 
 mod licences;
+mod macos;
+mod made;
+mod sign;
 mod trial;
 
 use crate::bundle;
 use crate::files::{copy, remove, replace, write};
+use crate::patch;
+use crate::python;
 use crate::sha256;
 use crate::shell::{cargo, root, run_to_end, succeeds};
 use crate::symbols;
+use crate::system::{Profile, System};
+use made::{Made, beside};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -19,91 +26,133 @@ pub(crate) struct Options {
     pub(crate) wheel: bool,
     /// Install the packages, and render with what was installed.
     pub(crate) trial: bool,
-}
-
-/// The result for a file that needs a tool. If the tool is there but fails, that is an error.
-enum Made {
-    File(PathBuf),
-    /// Not made, because something is missing: what, and how to get it.
-    Nothing(String),
+    /// The system to make it for.
+    pub(crate) system: System,
 }
 
 /// Completions by shell, with the names of their files.
-const COMPLETIONS: [(&str, &str); 3] = [("bash", "sprung.bash"), ("zsh", "_sprung"), ("fish", "sprung.fish")];
+const COMPLETIONS: [(&str, &str); 4] =
+    [("bash", "sprung.bash"), ("zsh", "_sprung"), ("fish", "sprung.fish"), ("powershell", "sprung.ps1")];
 
 /// Makes all files for which the tools are installed, reports those left out, and tries the files if that is requested.
 pub(crate) fn run(options: &Options) -> Result<(), String> {
-    let folder = root().join("target/dist");
+    let system = &options.system;
+    let folder = system.folder().join("dist");
     remove(&folder)?;
-    let stage = stage(&folder, options.no_plugin)?;
-    let mut made = vec![archive(&folder, &stage)?];
-    let mut left_out = Vec::new();
-    match debian_package(&folder)? {
-        Made::File(package) => made.push(package),
-        Made::Nothing(reason) => left_out.push(reason),
-    }
-    if options.wheel {
-        match wheel(&folder)? {
-            Made::File(wheel) => made.push(wheel),
+    let stage = stage(&folder, options)?;
+    let (mut made, mut left_out) = (vec![archive(&stage, system)?], Vec::new());
+    let installer = match system.name {
+        "windows" => installer(&stage, options)?,
+        "macos" => macos::package(&stage)?,
+        _ if *system == System::own() => debian_package(&folder)?,
+        _ => Made::Nothing("the Debian package: it is made where the command is built".to_owned()),
+    };
+    let wheel = options.wheel.then(|| wheel(&folder, system)).transpose()?;
+    for file in [Some(installer), wheel].into_iter().flatten() {
+        match file {
+            Made::File(file) => made.push(file),
             Made::Nothing(reason) => left_out.push(reason),
         }
     }
-    package_for_crates_io()?;
+    if *system == System::own() {
+        package_for_crates_io()?;
+    }
     let sums = made.iter().map(|file| checksum(file)).collect::<Result<String, String>>()?;
     write(&folder.join("SHA256SUMS"), &sums)?;
     print!("{sums}");
     left_out.iter().for_each(|message| println!("left out: {message}"));
     if options.trial {
-        trial::run(&folder, &made)?;
+        trial::run(&folder, &made, system)?;
     }
     Ok(())
 }
 
 /// The folder that is packed: `sprung-VERSION-CPU-SYSTEM`.
-fn stage(folder: &Path, no_plugin: bool) -> Result<PathBuf, String> {
-    let name = format!("sprung-{}-{}-{}", env!("CARGO_PKG_VERSION"), std::env::consts::ARCH, std::env::consts::OS);
-    let stage = folder.join(name);
-    // Debug symbols are most of the command's size.
-    let build = "rustc --release --package sprung-cli --bin sprung -- -C strip=symbols";
-    run_to_end(&mut cargo(build), "the command does not build")?;
-    let command = root().join("target/release").join(format!("sprung{}", std::env::consts::EXE_SUFFIX));
-    symbols::check(&command)?;
-    copy(&command, &stage.join("bin").join(command.file_name().unwrap_or_default()))?;
-    run_to_end(Command::new(&command).arg("man").arg(stage.join("man/man1")), "the manual pages")?;
+fn stage(folder: &Path, options: &Options) -> Result<PathBuf, String> {
+    let (system, version) = (&options.system, env!("CARGO_PKG_VERSION"));
+    let stage = folder.join(format!("sprung-{version}-{}-{}", system.architecture, system.name));
+    let is_linux = system.name == "linux";
+    // On Linux, what plays needs libraries of the system's, which not every system has.
+    let features = if is_linux { "" } else { "--features play" };
+    let build = format!("rustc --package sprung-cli --bin sprung {features}");
+    let command = program(system, &build, "sprung", &stage)?;
+    let run = |arguments: &[&str]| {
+        let output = system.command(&command)?.args(arguments).output().map_err(|error| error.to_string())?;
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        if output.status.success() { Ok(output.stdout) } else { Err(format!("sprung {}: {said}", arguments.join(" "))) }
+    };
+    if system.name != "windows" {
+        run(&["man", &stage.join("man/man1").to_string_lossy()])?;
+    }
     for (shell, file) in COMPLETIONS {
-        let output = Command::new(&command).args(["completions", shell]).output().map_err(|error| error.to_string())?;
-        if !output.status.success() {
-            return Err(format!("‘sprung completions {shell}’ failed"));
-        }
-        write(&stage.join("completions").join(file), &String::from_utf8_lossy(&output.stdout))?;
+        let script = run(&["completions", shell])?;
+        write(&stage.join("completions").join(file), &String::from_utf8_lossy(&script))?;
     }
     for file in ["README.md", "CHANGELOG.md", "LICENSE-APACHE", "LICENSE-MIT"] {
         copy(&root().join(file), &stage.join(file))?;
     }
     copy(&root().join("assets/manual"), &stage.join("manual"))?;
     let mut manifests = vec!["src/cli/Cargo.toml"];
-    if !no_plugin {
-        let bundles = bundle::run(true)?;
+    if !options.no_plugin {
+        let bundles = bundle::run(system, Profile::Release)?;
         for format in bundle::Format::ALL {
             copy(&bundles.join(format.file_name()), &stage.join(format.file_name()))?;
+        }
+        if !is_linux {
+            patch::run()?;
+            let build = "rustc --manifest-path plugin/Cargo.toml --features standalone --bin sprung-standalone";
+            program(system, build, "sprung-standalone", &stage)?;
         }
         manifests.push("plugin/Cargo.toml");
     }
     write(&stage.join("LICENSES-OF-CRATES.txt"), &licences::of_crates(&manifests)?)?;
+    if !is_linux {
+        let code = ["sprung", "sprung-standalone"].map(|name| stage.join("bin").join(system.program(name)));
+        let bundles = bundle::Format::ALL.map(|format| stage.join(format.signed(system)));
+        let code: Vec<&Path> = code.iter().chain(&bundles).map(|path| &**path).filter(|path| path.exists()).collect();
+        sign::run(sign::CODE, &code)?;
+    }
     // The Debian package names its files, so they need one place that does not depend on version and machine.
     replace(&folder.join("stage"), |aside| copy(&stage, aside))?;
     Ok(stage)
 }
 
-/// Packs the folder.
-fn archive(folder: &Path, stage: &Path) -> Result<PathBuf, String> {
-    let name = stage.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let path = folder.join(format!("{name}.tar.gz"));
-    // The same files give the same archive, as long as the compressor’s version is the same.
-    let mut tar = Command::new("tar");
-    tar.args(["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--mtime=@0", "-czf"]).arg(&path);
-    run_to_end(tar.arg("-C").arg(folder).arg(&name), "tar")?;
+/// Builds a program and copies it to where it is packed.
+fn program(system: &System, build: &str, name: &str, stage: &Path) -> Result<PathBuf, String> {
+    let file = system.program(name);
+    let built = system.build(build, Profile::Release, &file)?;
+    symbols::check(&built)?;
+    let packed = stage.join("bin").join(file);
+    copy(&built, &packed)?;
+    Ok(packed)
+}
+
+/// Packs the folder in the way of its system.
+fn archive(stage: &Path, system: &System) -> Result<PathBuf, String> {
+    let ending = if system.name == "windows" { "zip" } else { "tar.gz" };
+    let path = beside(stage, ending);
+    let mut pack = Command::new(python::PROGRAM);
+    run_to_end(pack.arg(root().join("xtask/src/dist/pack.py")).arg(stage).arg(&path), "pack.py")?;
     Ok(path)
+}
+
+/// An installer for Windows, by NSIS.
+fn installer(stage: &Path, options: &Options) -> Result<Made, String> {
+    if options.system.architecture != "x86_64" {
+        return Ok(Made::Nothing("the installer: NSIS makes it for x86_64 alone".to_owned()));
+    }
+    if !succeeds("makensis", &["-VERSION"]) {
+        return Ok(Made::Nothing("the installer: there is no makensis; install nsis".to_owned()));
+    }
+    let path = beside(stage, "exe");
+    let define = |name: &str, value: &Path| format!("-D{name}={}", value.display());
+    let mut make = Command::new("makensis");
+    make.args(["-V2", "-INPUTCHARSET", "UTF8", &format!("-DVERSION={}", env!("CARGO_PKG_VERSION"))]);
+    make.args([define("STAGE", stage), define("OUT", &path)]);
+    make.args((!options.no_plugin).then_some("-DPLUGIN"));
+    run_to_end(make.arg(root().join("xtask/src/dist/installer.nsi")), "makensis")?;
+    sign::run(sign::CODE, &[&path])?;
+    Ok(Made::File(path))
 }
 
 /// A Debian package of the command, made by cargo-deb from `package.metadata.deb` in `Cargo.toml`.
@@ -158,12 +207,12 @@ fn maintainer(address: &str, name: Option<&str>) -> Result<String, String> {
 }
 
 /// A wheel, by maturin in a virtual environment of its own.
-fn wheel(folder: &Path) -> Result<Made, String> {
+fn wheel(folder: &Path, system: &System) -> Result<Made, String> {
     let environment = root().join("target/tools/maturin");
-    let program = environment.join("bin/maturin");
+    let program = python::of(&environment, "maturin");
     if !program.is_file() {
-        let python = environment.join("bin/python");
-        let made = succeeds("python3", &["-m", "venv", &environment.to_string_lossy()])
+        let python = python::of(&environment, "python");
+        let made = succeeds(python::PROGRAM, &["-m", "venv", &environment.to_string_lossy()])
             && succeeds(&python.to_string_lossy(), &["-m", "pip", "install", "--quiet", "maturin>=1.10,<2"]);
         if !made {
             return Ok(Made::Nothing("the wheel: maturin could not be installed (python3-venv, pip)".to_owned()));
@@ -171,6 +220,7 @@ fn wheel(folder: &Path) -> Result<Made, String> {
     }
     let mut command = Command::new(&program);
     command.args(["build", "--release", "--strip", "--manifest-path", "src/python/Cargo.toml", "--out"]).arg(folder);
+    command.args(system.triple.iter().flat_map(|triple| ["--target", triple]));
     run_to_end(command.current_dir(root()), "maturin")?;
     made_by("maturin", folder, "whl")
 }

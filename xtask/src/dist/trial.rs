@@ -1,8 +1,11 @@
 //! Installs the files that `dist` made into empty places, and compares their renders with those of the command here.
 
 use crate::files::remove;
+use crate::python;
 use crate::sha256;
-use crate::shell::{root, run_to_end, succeeds};
+use crate::shell::{cargo, run_to_end, succeeds};
+use crate::system::{Profile, System};
+use crate::wine::{Prefix, TARGET};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -13,14 +16,24 @@ const RENDER: [&str; 9] = ["render", "--preset", "Marimba", "--note", "C4", "--b
 const PYTHON: &str = "import hashlib, sprung; print(hashlib.sha256(sprung.render('Marimba', ['C4']).astype('<f4').tobytes()).hexdigest())";
 
 /// Tries each file that it knows how to install.
-pub(super) fn run(folder: &Path, made: &[PathBuf]) -> Result<(), String> {
-    let here = rendered(&mut Command::new(root().join("target/release/sprung")))?;
+pub(super) fn run(folder: &Path, made: &[PathBuf], system: &System) -> Result<(), String> {
+    // The bits of another system are compared with those of this one, which are the same in every profile.
+    let own = System::own();
+    let command = match *system == own {
+        true => folder.join("stage/bin").join(own.program("sprung")),
+        false => own.build("rustc --package sprung-cli --bin sprung", Profile::Debug, &own.program("sprung"))?,
+    };
+    let here = rendered(&mut Command::new(command))?;
     for file in made {
         match file.extension().and_then(|ending| ending.to_str()) {
-            Some("gz") => archive(folder, file, &here)?,
+            Some("gz" | "zip") => archive(folder, file, &here, system)?,
             Some("deb") => debian_package(folder, file, &here)?,
-            Some("whl") => wheel(folder, file, &here)?,
-            _ => continue,
+            Some("exe") if !cfg!(windows) => installer(folder, file, &here)?,
+            Some("whl") if *system == own => wheel(folder, file, &here)?,
+            _ => {
+                println!("{}: not tried", file.display());
+                continue;
+            }
         }
         println!("{}: installed, and renders the same samples", file.display());
     }
@@ -38,14 +51,65 @@ fn same(found: &[u8], here: &[u8]) -> Result<(), String> {
 }
 
 /// Unpacks the archive and runs its command.
-fn archive(folder: &Path, file: &Path, here: &[u8]) -> Result<(), String> {
+fn archive(folder: &Path, file: &Path, here: &[u8], system: &System) -> Result<(), String> {
     let place = folder.join("unpacked");
     std::fs::create_dir_all(&place).map_err(|error| format!("{}: {error}", place.display()))?;
-    run_to_end(Command::new("tar").arg("-xzf").arg(file).arg("-C").arg(&place), "tar")?;
-    let name = file.file_name().unwrap_or_default().to_string_lossy().replace(".tar.gz", "");
-    let found = rendered(&mut Command::new(place.join(name).join("bin/sprung")))?;
+    let mut unpack = Command::new(python::PROGRAM);
+    unpack.args(["-c", "import shutil, sys; shutil.unpack_archive(*sys.argv[1:])"]).arg(file).arg(&place);
+    run_to_end(&mut unpack, "unpack_archive")?;
+    let name = file.file_name().unwrap_or_default().to_string_lossy().replace(".tar.gz", "").replace(".zip", "");
+    let found = rendered(&mut system.command(&place.join(name).join("bin").join(system.program("sprung")))?)?;
     remove(&place)?;
     same(&found, here)
+}
+
+/// Installs the plugin and the command for Windows into a new prefix of Wine, uses them from there, and removes them.
+fn installer(folder: &Path, file: &Path, here: &[u8]) -> Result<(), String> {
+    let place = folder.join("prefix");
+    let prefix = Prefix::at(place.clone())?;
+    run_to_end(prefix.command(file).arg("/S"), "the installer")?;
+    prefix.wait()?;
+    // Windows' own shell finds the command on the search path.
+    same(&rendered(prefix.command("cmd").args(["/c", "sprung"]))?, here)?;
+    let common = r"C:\Program Files\Common Files";
+    if place.join("drive_c/Program Files/Common Files/CLAP/Sprung.clap").is_file() {
+        for tests in ["bits_of_the_command", "vst3_state"] {
+            let mut hosts = cargo("test --manifest-path plugin/Cargo.toml --test hosts --target");
+            hosts.args([TARGET, "--", tests]).env("SPRUNG_BUNDLES", common);
+            prefix.lend_to_cargo(&mut hosts);
+            run_to_end(&mut hosts, "the plugin in hosts, from the folders in which they look")?;
+        }
+    }
+    run_to_end(prefix.command(r"C:\Program Files\Sprung\uninstall.exe").arg("/S"), "the uninstaller")?;
+    prefix.wait()?;
+    let left = left_of_sprung(&place)?;
+    if !left.is_empty() {
+        return Err(format!("the uninstaller has left {}", left.join(", ")));
+    }
+    remove(&place).map(drop)
+}
+
+/// The files in a prefix, and the files of its registry, that still name Sprung.
+fn left_of_sprung(prefix: &Path) -> Result<Vec<String>, String> {
+    let (mut left, mut folders) = (Vec::new(), vec![prefix.join("drive_c")]);
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?.flatten() {
+            let path = entry.path();
+            if entry.file_name().to_string_lossy().to_lowercase().contains("sprung") {
+                left.push(path.display().to_string());
+            }
+            // Links lead out of the prefix.
+            if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+                folders.push(path);
+            }
+        }
+    }
+    let registry = prefix.join("system.reg");
+    let text = std::fs::read(&registry).map_err(|error| format!("{}: {error}", registry.display()))?;
+    if String::from_utf8_lossy(&text).contains("Sprung") {
+        left.push(registry.display().to_string());
+    }
+    Ok(left)
 }
 
 /// Installs the package into a system that has nothing but Debian’s essential packages. Needs an administrator’s rights.
@@ -73,8 +137,8 @@ fn debian_package(folder: &Path, file: &Path, here: &[u8]) -> Result<(), String>
 /// Installs the wheel into an empty virtual environment.
 fn wheel(folder: &Path, file: &Path, here: &[u8]) -> Result<(), String> {
     let environment = folder.join("venv");
-    run_to_end(Command::new("python3").args(["-m", "venv"]).arg(&environment), "python3 -m venv")?;
-    let python = environment.join("bin/python");
+    run_to_end(Command::new(python::PROGRAM).args(["-m", "venv"]).arg(&environment), "python3 -m venv")?;
+    let python = python::of(&environment, "python");
     let mut install = Command::new(&python);
     run_to_end(install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]).arg(file), "pip")?;
     let output = Command::new(&python).args(["-c", PYTHON]).output().map_err(|error| error.to_string())?;

@@ -1,27 +1,44 @@
 //! The plugin as hosts find it: the library that cargo built, in the folder layout of each format.
 
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 /// Environment variable: a folder with the `Sprung.clap` and `Sprung.vst3` to test instead of the library from this
-/// build.
+/// build, or with the folders `CLAP` and `VST3` that contain them.
 const BUNDLES: &str = "SPRUNG_BUNDLES";
+
+/// Path of the library within `Sprung.vst3`.
+const VST3_LIBRARY: &str = match (cfg!(target_os = "macos"), cfg!(windows), cfg!(target_arch = "x86_64")) {
+    (true, ..) => "Contents/MacOS/Sprung",
+    (_, true, true) => "Contents/x86_64-win/Sprung.vst3",
+    (_, true, false) => "Contents/arm64-win/Sprung.vst3",
+    (_, false, true) => "Contents/x86_64-linux/Sprung.so",
+    (_, false, false) => "Contents/aarch64-linux/Sprung.so",
+};
 
 /// `Sprung.clap`.
 pub(crate) fn clap() -> &'static Path {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
-    PATH.get_or_init(|| folder().join("Sprung.clap"))
+    PATH.get_or_init(|| bundle("CLAP", "Sprung.clap"))
 }
 
 /// `Sprung.vst3`, a folder.
 pub(crate) fn vst3() -> &'static Path {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
-    PATH.get_or_init(|| folder().join("Sprung.vst3"))
+    PATH.get_or_init(|| bundle("VST3", "Sprung.vst3"))
+}
+
+/// A bundle in the folder, or in the folder of its format, as installers put it.
+fn bundle(format: &str, name: &str) -> PathBuf {
+    let folder = folder();
+    let places = [folder.join(format).join(name), folder.join(name)];
+    places.iter().find(|place| place.exists()).unwrap_or(&places[1]).clone()
 }
 
 /// The library within `Sprung.vst3`.
 pub(crate) fn vst3_library() -> PathBuf {
-    vst3().join("Contents").join(architecture()).join("Sprung.so")
+    vst3().join(VST3_LIBRARY)
 }
 
 /// Whether the bundles to test were given by [`BUNDLES`].
@@ -43,11 +60,14 @@ fn folder() -> &'static Path {
 
 /// Copies the library into bundles, once for this process and all processes that it starts.
 fn assemble() -> PathBuf {
+    if cfg!(target_os = "macos") {
+        panic!("bundles for macOS have property lists: ‘cargo xtask test’ makes them");
+    }
     let library = library();
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("bundles-{}", std::process::id()));
-    let binary = folder.join("Sprung.vst3/Contents").join(architecture());
-    std::fs::create_dir_all(&binary).unwrap();
-    for to in [folder.join("Sprung.clap"), binary.join("Sprung.so")] {
+    let within = folder.join("Sprung.vst3").join(VST3_LIBRARY);
+    std::fs::create_dir_all(within.parent().unwrap()).unwrap();
+    for to in [folder.join("Sprung.clap"), within] {
         std::fs::copy(&library, &to).unwrap_or_else(|error| panic!("{}: {error}", library.display()));
     }
     folder
@@ -68,11 +88,7 @@ pub(crate) fn environment() -> (&'static str, &'static Path) {
 /// The dynamic library that cargo built together with this test.
 fn library() -> PathBuf {
     let test = std::env::current_exe().unwrap();
-    let library = test.with_file_name("libsprung_plugin.so");
+    let library = test.with_file_name(format!("{DLL_PREFIX}sprung_plugin{DLL_SUFFIX}"));
     assert!(library.is_file(), "{}: cargo has not built the plugin's library", library.display());
     library
-}
-
-fn architecture() -> &'static str {
-    if cfg!(target_arch = "x86_64") { "x86_64-linux" } else { "aarch64-linux" }
 }

@@ -3,16 +3,20 @@
 #![allow(unsafe_code, non_snake_case, reason = "the format is a C interface, and its names are the format's")]
 
 mod block;
+#[cfg(target_os = "linux")]
 mod frame;
 mod handler;
+mod library;
 mod stream;
 
+#[cfg(target_os = "linux")]
 pub(crate) use block::{Automation, Block};
+#[cfg(target_os = "linux")]
 pub(crate) use frame::{Frame, FrameWithoutLoop};
 
 use crate::host::bundle;
 use handler::{Handler, Places};
-use std::ffi::{CString, c_void};
+use library::Library;
 use std::ptr::null_mut;
 use std::sync::Arc;
 use stream::Stream;
@@ -22,45 +26,17 @@ use vst3::Steinberg::Vst::{
     SymbolicSampleSizes_,
 };
 use vst3::Steinberg::{
-    IBStream, IPlugFrame, IPlugView, IPlugViewContentScaleSupport, IPlugViewContentScaleSupportTrait, IPlugViewTrait,
-    IPluginBaseTrait, IPluginFactory, IPluginFactoryTrait, ViewRect, kPlatformTypeX11EmbedWindowID, kResultOk,
+    IBStream, IPlugView, IPlugViewContentScaleSupport, IPlugViewContentScaleSupportTrait, IPlugViewTrait,
+    IPluginBaseTrait, IPluginFactory, IPluginFactoryTrait, ViewRect, kResultOk,
 };
 use vst3::{ComPtr, ComWrapper, Interface};
 
 /// Frames per block.
 pub(crate) const FRAMES: usize = 64;
 
-/// The plugin's class id. Pinned: a host finds a project's plugin by it.
-const CLASS: &[u8; 16] = b"SprungMassSpring";
-
-/// The open library of the bundle.
-struct Library(*mut c_void);
-
-// SAFETY: a handle of the system's loader may be used on any thread.
-unsafe impl Send for Library {}
-// SAFETY: as above.
-unsafe impl Sync for Library {}
-
-impl Library {
-    fn symbol(&self, name: &str) -> *mut c_void {
-        let name = CString::new(name).unwrap();
-        // SAFETY: the library is open, and the name ends with a zero.
-        let symbol = unsafe { libc::dlsym(self.0, name.as_ptr()) };
-        assert!(!symbol.is_null(), "the bundle has no {name:?}");
-        symbol
-    }
-}
-
-impl Drop for Library {
-    fn drop(&mut self) {
-        // SAFETY: the library has this function with this type, and is not used afterwards.
-        unsafe {
-            let exit: extern "C" fn() -> bool = std::mem::transmute(self.symbol("ModuleExit"));
-            assert!(exit());
-            libc::dlclose(self.0);
-        }
-    }
-}
+/// The plugin's class id. Pinned: a host finds a project's plugin by it. On Windows ids have the order of COM's, whose numbers
+/// are little-endian, so that hosts of all systems write the same text for it.
+const CLASS: &[u8; 16] = if cfg!(windows) { b"urpSgnaMssSpring" } else { b"SprungMassSpring" };
 
 /// The plugin's factory. The library stays open as long as anything of it is in use.
 pub(crate) struct Module {
@@ -70,19 +46,10 @@ pub(crate) struct Module {
 
 impl Module {
     pub(crate) fn open() -> Self {
-        let path = CString::new(bundle::vst3_library().to_str().expect("a path in Unicode")).unwrap();
-        // SAFETY: the bundle's library has these two functions with these types.
-        unsafe {
-            let library = libc::dlopen(path.as_ptr(), libc::RTLD_NOW | libc::RTLD_LOCAL);
-            assert!(!library.is_null(), "{path:?} cannot be loaded");
-            let library = Library(library);
-            let entry: extern "C" fn(*mut c_void) -> bool = std::mem::transmute(library.symbol("ModuleEntry"));
-            assert!(entry(library.0));
-            let factory: extern "system" fn() -> *mut IPluginFactory =
-                std::mem::transmute(library.symbol("GetPluginFactory"));
-            let factory = ComPtr::from_raw(factory()).expect("a factory");
-            Self { factory, library: Arc::new(library) }
-        }
+        let library = Library::open(&bundle::vst3_library());
+        // SAFETY: the function gives a reference to the caller.
+        let factory = unsafe { ComPtr::from_raw(library.factory()) }.expect("a factory");
+        Self { factory, library: Arc::new(library) }
     }
 }
 
@@ -201,7 +168,8 @@ impl Vst3 {
     }
 
     /// Opens the plugin's window inside a window of the host.
-    pub(crate) fn open_window(&self, frame: &ComPtr<IPlugFrame>, parent: u32) -> View {
+    #[cfg(target_os = "linux")]
+    pub(crate) fn open_window(&self, frame: &ComPtr<vst3::Steinberg::IPlugFrame>, parent: u32) -> View {
         let view = self.view();
         view.attach(frame, parent);
         view
@@ -223,12 +191,17 @@ pub(crate) struct View(ComPtr<IPlugView>);
 
 impl View {
     /// Opens the window inside a window of the host.
-    pub(crate) fn attach(&self, frame: &ComPtr<IPlugFrame>, parent: u32) {
+    #[cfg(target_os = "linux")]
+    pub(crate) fn attach(&self, frame: &ComPtr<vst3::Steinberg::IPlugFrame>, parent: u32) {
         // SAFETY: frame and parent outlive the view; the calls are in the order that the format requires.
         unsafe {
             assert_eq!(self.0.setFrame(frame.as_ptr()), kResultOk);
-            let parent = parent as usize as *mut c_void;
-            assert_eq!(self.0.attached(parent, kPlatformTypeX11EmbedWindowID), kResultOk, "the window opens");
+            let parent = std::ptr::without_provenance_mut(parent as usize);
+            assert_eq!(
+                self.0.attached(parent, vst3::Steinberg::kPlatformTypeX11EmbedWindowID),
+                kResultOk,
+                "the window opens"
+            );
         }
     }
 
@@ -264,6 +237,7 @@ impl View {
 }
 
 /// Number of threads of this process with this name.
+#[cfg(target_os = "linux")]
 pub(crate) fn threads_called(name: &str) -> usize {
     let tasks = std::fs::read_dir("/proc/self/task").unwrap();
     // Threads may end during the count.

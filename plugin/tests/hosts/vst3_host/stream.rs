@@ -3,7 +3,10 @@
 use std::ffi::c_void;
 use std::sync::Mutex;
 use vst3::Class;
-use vst3::Steinberg::{IBStream, IBStream_::IStreamSeekMode_, IBStreamTrait, kInvalidArgument, kResultOk, tresult};
+use vst3::Steinberg::{
+    IBStream, IBStream_::IStreamSeekMode, IBStream_::IStreamSeekMode_, IBStreamTrait, kInvalidArgument, kResultOk,
+    tresult,
+};
 
 /// The bytes, and the read or write position.
 pub(super) struct Stream(Mutex<(Vec<u8>, usize)>);
@@ -54,7 +57,7 @@ impl IBStreamTrait for Stream {
 
     unsafe fn seek(&self, offset: i64, mode: i32, result: *mut i64) -> tresult {
         let (bytes, place) = &mut *self.0.lock().unwrap();
-        let from = match mode as u32 {
+        let from = match mode as IStreamSeekMode {
             IStreamSeekMode_::kIBSeekSet => 0,
             IStreamSeekMode_::kIBSeekCur => *place as i64,
             IStreamSeekMode_::kIBSeekEnd => bytes.len() as i64,

@@ -5,6 +5,7 @@ mod stopped;
 mod target;
 
 use crate::shell::root;
+use crate::wine;
 use cases::{Accepted, Asked, Outcome};
 use sprung::dsp::Level;
 use std::path::Path;
@@ -50,6 +51,12 @@ impl Row {
             .filter(is_own)
             .map(|level| Row { cpu: own, level: level.name().to_owned(), target: Target::Own, forced: level })
             .collect();
+        if cfg!(all(target_os = "linux", target_arch = "x86_64")) {
+            let level =
+                Level::ALL.into_iter().filter(is_own).rfind(|level| level.is_available()).unwrap_or(Level::Scalar);
+            let name = format!("{}, by Wine", level.name());
+            rows.push(Row { cpu: wine::TARGET, level: name, target: Target::Windows, forced: level });
+        }
         for (level, target) in [(Level::Scalar, Target::Wasm), (Level::Simd128, Target::WasmSimd)] {
             let name = format!("{}, in Node", level.name());
             rows.push(Row { cpu: "wasm32", level: name, target, forced: level });

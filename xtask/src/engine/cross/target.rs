@@ -2,6 +2,7 @@
 
 use super::stopped::Stopped::{self, Failed, Missing};
 use crate::shell::{cargo, has_standard_library, root, run_to_end, succeeds};
+use crate::wine::{self, Prefix};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -17,6 +18,8 @@ pub(crate) enum Target {
     /// This machine.
     Own,
     Aarch64,
+    /// Windows on this CPU, under Wine.
+    Windows,
     Wasm,
     /// WebAssembly whose scalar code the compiler may turn into vector instructions.
     WasmSimd,
@@ -28,6 +31,7 @@ impl Target {
         match self {
             Target::Own => None,
             Target::Aarch64 => Some("aarch64-unknown-linux-gnu"),
+            Target::Windows => Some(wine::TARGET),
             Target::Wasm | Target::WasmSimd => Some("wasm32-unknown-unknown"),
         }
     }
@@ -38,6 +42,7 @@ impl Target {
         run_to_end(&mut build, "tests/cross does not build").map_err(Failed)?;
         let name = match self {
             Target::Own | Target::Aarch64 => format!("sprung-cross{}", std::env::consts::EXE_SUFFIX),
+            Target::Windows => "sprung-cross.exe".to_owned(),
             Target::Wasm | Target::WasmSimd => "sprung-cross.wasm".to_owned(),
         };
         Ok(self.folder().join(name))
@@ -86,6 +91,7 @@ impl Target {
     pub(crate) fn command(self, program: &Path) -> Result<Command, String> {
         let (runner, package) = match self {
             Target::Own => return Ok(Command::new(program)),
+            Target::Windows => return Ok(Prefix::of_tests()?.command(program)),
             Target::Aarch64 => ("qemu-aarch64", "qemu-user libc6-arm64-cross"),
             Target::Wasm | Target::WasmSimd => ("node", "nodejs"),
         };
