@@ -186,7 +186,7 @@ mod tests {
                 _ => words.extend(part.split_whitespace().map(str::to_owned)),
             }
         }
-        words.into_iter().take_while(|word| word != "|" && word != ">").collect()
+        words.into_iter().take_while(|word| !["|", ">", ">>"].contains(&word.as_str())).collect()
     }
 
     #[test]
