@@ -60,7 +60,7 @@ impl Breath {
 ///
 /// The tube's energy `Σ p_m²/κ_m` changes by exactly `2 V p̄`. If `p̄` is above `γ`, air flows out, and if it is below 0, air
 /// flows in against it: both only take energy. So a frame adds at most `2 q β h √(γ − p̄) p̄ ≤ 0.77 q β h γ^1.5`, the work of the
-/// mouth, at any rate and for any settings (`valve_tests` tries 10,000).
+/// mouth, at any rate and for any settings (`mode_bank/played_tests` tries 10,000).
 ///
 /// The valve turns exactly, as a mode does, about the place where the present difference would hold it. The flow uses its place
 /// half a frame ahead: with that, a note has the same pitch within a cent at 44.1 and at 192 kHz. That the moving valve itself
