@@ -99,7 +99,7 @@ const NEAR: f64 = 5.0;
 pub(crate) struct Correction([f64; TUNED]);
 
 impl Correction {
-    /// That of a patch; none if its breath is off. Takes about a tenth of a second.
+    /// That of a patch; none if its breath is off. Takes up to a quarter of a second.
     pub(crate) fn of(patch: &Patch) -> Option<Self> {
         if patch.get(Param::BreathLevel) <= Param::BreathLevel.info().min {
             return None;
