@@ -90,6 +90,11 @@ named! {
 }
 
 impl Source {
+    /// The value of [`Source::Key`] at a pitch on the MIDI scale. Real-time safe.
+    pub(crate) fn key_at(pitch: f64) -> f32 {
+        ((pitch - 60.0) / 60.0).clamp(-1.0, 1.0) as f32
+    }
+
     /// Whether its values range from −1 to 1; otherwise they range from 0 to 1.
     pub fn is_bipolar(self) -> bool {
         use Source::{Alternation, Bend, Key, Lfo1, Lfo2, Lfo3, Random, Timbre};

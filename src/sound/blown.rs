@@ -8,7 +8,7 @@ use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::exciter::{Breath, Player, Valve, ValveLaw};
 use crate::dsp::mode_bank::{MAX_MODES, ModeBank, ModeRows, ModeSetup};
 use crate::params::{Choice, Param, Valve as Kind};
-use crate::patch::routes::{Source, amount_param};
+use crate::patch::routes::{Route, Source, amount_param};
 use crate::patch::{Mode, Patch};
 use crate::units::{frequency_from_key, ratio_from_semitones};
 use libm::{atan2, cos, fabs, pow, sin};
@@ -131,11 +131,11 @@ impl Correction {
 fn value(patch: &Patch, param: Param, key: f64) -> f64 {
     let info = param.info();
     let sources = |source| match source {
-        Source::Key => Some((key as f32 - 60.0) / 60.0),
+        Source::Key => Some(Source::key_at(key)),
         Source::Velocity => Some(VELOCITY),
         _ => None,
     };
-    let travel = |(place, route): (usize, crate::patch::routes::Route)| {
+    let travel = |(place, route): (usize, Route)| {
         let amount = patch.get(amount_param(place)) * 0.01;
         let is_own = route.destination == param && route.scale.is_none();
         sources(route.source).filter(|_| is_own).map_or(0.0, |source| amount * route.response.apply(source))
@@ -161,10 +161,10 @@ fn cents_off(patch: &Patch, key: f64, cents: f64) -> Option<f64> {
         ModeSetup { frequency: sounding(mode), t60, left: heard, right: heard }
     };
     let mut bank = ModeBank::new(RATE);
-    bank.load(&modes.iter().zip(shares()).map(setup).collect::<ModeRows>());
-    for (m, share) in shares().enumerate() {
-        bank.set_contact(m, share as f32, if share > 0.0 { 1.0 } else { 0.0 });
-    }
+    let rows: ModeRows = modes.iter().zip(shares()).map(setup).collect();
+    bank.load(&rows);
+    // Heard is what the valve feels: all modes alike.
+    shares().enumerate().for_each(|(m, share)| bank.set_contact(m, share as f32, rows.left[m]));
     let mut valve = Valve::REST;
     valve.breath = Breath {
         pressure: [(0.01 * value(Param::BreathPressure)) as f32, 0.0],

@@ -40,7 +40,7 @@ impl Drive {
 #[derive(Debug)]
 pub enum Player<'a> {
     /// A bow.
-    Bow(&'a Bow),
+    Bow(Bow),
     /// Breath through a valve.
     Breath(&'a mut Valve),
 }

@@ -84,10 +84,9 @@ pub struct Valve {
     x: f32,
     y: f32,
     turn: [f32; 2],
-    /// Damping over angular frequency, the velocity by coordinate for half a frame, and the law's reach.
+    /// Damping over angular frequency, and the velocity by coordinate for half a frame.
     lag: f32,
     ahead: [f32; 2],
-    reach: f32,
     law: ValveLaw,
 }
 
@@ -105,7 +104,6 @@ impl Valve {
         turn: [0.0; 2],
         lag: 0.0,
         ahead: [0.0; 2],
-        reach: 0.0,
         law: ValveLaw { frequency: 0.0, quality: 1.0, reach: 0.0 },
     };
 
@@ -121,7 +119,7 @@ impl Valve {
         self.turn = [(radius * cos(angle)) as f32, (radius * sin(angle)) as f32];
         self.lag = (damping / angle) as f32;
         self.ahead = [(-0.5 * damping) as f32, (0.5 * angle) as f32];
-        (self.reach, self.law) = (law.reach as f32, law);
+        self.law = law;
         let follow = 1.0 - exp(-TAU * EDDIES / sample_rate);
         // The numbers have a variance of 1/3.
         (self.follow, self.whole) = (follow as f32, sqrt(3.0 * (2.0 - follow) / follow) as f32);
@@ -141,7 +139,7 @@ impl Valve {
         let (left, half) = (mouth - p, 0.5 * shares * per_frame * gain);
         let root = 2.0 * left.abs() / (half + sqrtf(half * half + 4.0 * left.abs()) + f32::MIN_POSITIVE);
         // The place where this difference would hold the valve; in these coordinates, a place at rest has a `y` of its own.
-        let (held, [cos, sin]) = (self.reach * (root * root).copysign(left), self.turn);
+        let (held, [cos, sin]) = (self.law.reach as f32 * (root * root).copysign(left), self.turn);
         let (x, y) = (self.x - held, self.y - self.lag * held);
         (self.x, self.y) = (cos * x + sin * y + held, cos * y - sin * x + self.lag * held);
         per_frame * gain * root.copysign(left)

@@ -61,7 +61,7 @@ fn a_bow_gives_no_more_than_friction_at_its_speed() {
             bank.sweep_to(0.5 + stream.next(), CONTROL_FRAMES);
             for _ in 0..CONTROL_FRAMES {
                 let before = energy(&bank);
-                bank.render_played(None, Some(Player::Bow(&bow)), 1);
+                bank.render_played(None, Some(Player::Bow(bow)), 1);
                 bow.passed += 1;
                 let after = energy(&bank);
                 gained += u32::from(after > before);
@@ -99,7 +99,7 @@ fn a_bowed_mode_rings_for_as_long_as_it_is_bowed() {
         let mut squares = 0.0;
         for _ in 0..150 {
             bank.sweep_to(1.0, CONTROL_FRAMES);
-            let [left, _] = bank.render_played(None, Some(Player::Bow(&bow)), CONTROL_FRAMES);
+            let [left, _] = bank.render_played(None, Some(Player::Bow(bow)), CONTROL_FRAMES);
             squares += left.iter().map(|sample| f64::from(sample * sample)).sum::<f64>();
         }
         rms.push(libm::sqrt(squares / 4800.0));
@@ -117,7 +117,7 @@ fn a_bowed_bank_has_the_same_bits_in_any_division() {
             bank.sweep_to(1.0 + 0.01 * f64::from(tick), CONTROL_FRAMES);
             bow.passed = 0;
             for frames in pieces {
-                let rendered = bank.render_played(None, Some(Player::Bow(&bow)), *frames);
+                let rendered = bank.render_played(None, Some(Player::Bow(bow)), *frames);
                 sides.iter_mut().zip(rendered).for_each(|(side, part)| side.extend_from_slice(part));
                 bow.passed += *frames as u32;
             }

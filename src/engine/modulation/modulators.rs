@@ -119,7 +119,7 @@ impl Modulators {
         let strike = [
             (Source::Velocity, struck.velocity),
             (Source::ReleaseVelocity, 0.0),
-            (Source::Key, key_position(struck.pitch)),
+            (Source::Key, Source::key_at(struck.pitch)),
             (Source::Random, random::uniform(stream, 0)),
             (Source::Alternation, if struck.serial.is_multiple_of(2) { 1.0 } else { -1.0 }),
         ];
@@ -191,7 +191,7 @@ impl Modulators {
 
     /// Sets the note's pitch after a slide, in semitones on the MIDI scale.
     pub(crate) fn set_pitch(&mut self, pitch: f64) {
-        self.set_source(Source::Key, key_position(pitch));
+        self.set_source(Source::Key, Source::key_at(pitch));
     }
 
     /// Copies the settings, if there are new ones, and the phases of the shared oscillators. With new settings come new
@@ -307,9 +307,4 @@ fn set_nth(sources: &mut Sources, changed: &mut u32, first: Source, nth: usize, 
 fn set_macros(sources: &mut Sources, settings: &Settings) {
     let macros = &mut sources[Source::Macro1 as usize..];
     macros.iter_mut().zip(settings.macros).for_each(|(source, value)| *source = value);
-}
-
-/// Position of a pitch as [`Source::Key`] gives it: from −1 to 1, 0 at middle C.
-fn key_position(pitch: f64) -> f32 {
-    ((pitch - 60.0) / 60.0).clamp(-1.0, 1.0) as f32
 }

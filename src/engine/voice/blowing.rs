@@ -9,7 +9,7 @@ use crate::engine::controls::Controls;
 use crate::engine::gain::exciter_gain;
 use crate::params::{Param, Valve as Kind};
 use crate::sound::blown::{contact, flow, law, share};
-use libm::{exp, fabs, pow, sqrt};
+use libm::{exp, fabs, sqrt};
 
 /// The breath comes within 5 % of its pressure in the attack time, and leaves in this many seconds.
 const ATTACKS: f64 = 3.0;
@@ -119,13 +119,11 @@ impl Blowing {
     /// Sets what the modes take and give.
     fn place(&mut self, values: &StruckValues, frequency: f64, sample_rate: f64, bank: &mut Cells) {
         self.is_placed = true;
-        let (modes, stretch) = (values.modes().as_slice(), values.get(Param::Stretch));
         let [levels, ..] = values.tilted_levels();
         let loudest = levels.iter().fold(0.0, |most, level| f64::max(most, fabs(*level)));
         let (mut ratios, mut shares) = ([0.0; MAX_MODES], [0.0; MAX_MODES]);
-        for (m, mode) in modes.iter().take(MAX_MODES).enumerate() {
-            ratios[m] = pow(mode.ratio.into(), stretch);
-            shares[m] = share(mode, frequency * ratios[m], sample_rate);
+        for (m, (mode, (ratio, ..))) in values.modes().as_slice().iter().zip(bank.modes()).take(MAX_MODES).enumerate() {
+            (ratios[m], shares[m]) = (ratio, share(mode, frequency * ratio, sample_rate));
         }
         self.valve.breath.shares = shares.iter().sum::<f64>() as f32;
         bank.set_contacts(|m| contact(shares[m], [levels[m], loudest], ratios[m], self.amplitude));

@@ -300,8 +300,8 @@ impl SynthVoice {
         if let Some(separation) = &mut self.separation {
             separation.render(&self.strike, &self.bank, frames);
         }
-        let Self { strike, bank, fader, .. } = self;
-        strike.forces(frames, input, |drive, player| fader.mix(bank.render(drive, player, frames), [left, right]));
+        let (drive, player) = self.strike.forces(frames, input);
+        self.fader.mix(self.bank.render(drive, player, frames), [left, right]);
         self.tension.advance(frames);
         self.clock.advance(frames as u64);
         self.expressions.advance(frames as u32);

@@ -114,7 +114,7 @@ impl Strike {
 
     /// The forces of the next frames, if there are any: those of strikes and of the incoming sound, and the player's. `input` is
     /// the incoming sound: empty, or one sample for each frame. Breath takes the place of a bow.
-    pub(super) fn forces(&mut self, frames: usize, input: &[f32], render: impl FnOnce(Option<&Drive>, Option<Player>)) {
+    pub(super) fn forces(&mut self, frames: usize, input: &[f32]) -> (Option<&Drive>, Option<Player<'_>>) {
         let is_noisy = self.held_noise.is_on();
         let is_driven = self.exciter.is_active() || (self.input.is_on() && !input.is_empty()) || is_noisy;
         if is_driven || self.input.is_on() {
@@ -127,9 +127,9 @@ impl Strike {
         let bow = self.bowing.stroke(frames);
         let player = match self.blowing.blow(frames) {
             Some(valve) => Some(Player::Breath(valve)),
-            None => bow.as_ref().map(Player::Bow),
+            None => bow.map(Player::Bow),
         };
-        render(is_driven.then_some(&self.drive), player);
+        (is_driven.then_some(&self.drive), player)
     }
 
     /// Computes each mode's excitation gains. Returns the change of the energy that the last strike adds.
