@@ -79,6 +79,16 @@ impl Bank {
         }
     }
 
+    /// See [`ModeBank::set_hammered`]. With the original formulas, a hammer meets nothing.
+    pub(crate) fn set_hammered(&mut self, m: usize, weight: f64) -> [f64; 2] {
+        if let Self::Exact(bank) = self { bank.set_hammered(m, weight) } else { [0.0; 2] }
+    }
+
+    /// See [`ModeBank::given`].
+    pub(crate) fn given(&mut self) -> f32 {
+        if let Self::Exact(bank) = self { bank.given() } else { 0.0 }
+    }
+
     /// See [`ModeBank::nudge`].
     pub(crate) fn nudge(&mut self, m: usize, amplitude: f32) {
         either!(self, bank => bank.nudge(m, amplitude));

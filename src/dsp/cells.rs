@@ -185,10 +185,28 @@ impl Cells {
         }
     }
 
-    /// As [`super::ModeBank::render_played`]. The drive acts on all cells, the player only on the first.
+    /// Like [`super::ModeBank::set_hammered`], for all modes: `weight` tells that of a mode by its number. Returns the sums.
+    pub(crate) fn set_hammered(&mut self, weight: impl Fn(usize) -> f64) -> [f64; 2] {
+        let mut total = [0.0; 2];
+        for (cell, Cell { bank, .. }) in self.iter_mut().enumerate() {
+            for m in 0..bank.len() {
+                let own = bank.set_hammered(m, weight(cell * MAX_MODES + m));
+                total = [total[0] + own[0], total[1] + own[1]];
+            }
+        }
+        total
+    }
+
+    /// As [`super::ModeBank::render_played`]. The drive acts on all cells, and so does a hammer; other players act only on the first.
     pub(crate) fn render(&mut self, drive: Option<&Drive>, player: Option<Player>, frames: usize) -> [&[f32]; 2] {
-        let Self { cells, sum, .. } = self;
         let frames = frames.min(CONTROL_FRAMES);
+        let is_whole = self.cells[1].is_none();
+        let mut player = player;
+        if let Some(player @ (Player::Hammer(_) | Player::Forces(_))) = player.as_mut().filter(|_| !is_whole) {
+            self.render_hammered(drive.unwrap_or(&Drive::NONE), player, frames);
+            return self.sum.each_ref().map(|side| &side[..frames]);
+        }
+        let Self { cells, sum, .. } = self;
         let (first, rest) = cells.split_at_mut(1);
         let mut rest = rest.iter_mut().map_while(Option::as_deref_mut).peekable();
         let first = first[0].as_deref_mut().map(|cell| cell.bank.render_played(drive, player, frames));
@@ -203,6 +221,29 @@ impl Cells {
             }
         }
         sum.each_ref().map(|side| &side[..frames])
+    }
+
+    /// Renders all cells frame by frame, since a hammer feels all of them. Returns the player's forces.
+    pub(crate) fn render_hammered(
+        &mut self,
+        drive: &Drive,
+        player: &mut Player,
+        frames: usize,
+    ) -> [f32; CONTROL_FRAMES] {
+        let (mut now, mut forces, mut force) = (Drive::NONE, [0.0; CONTROL_FRAMES], [0.0; CONTROL_FRAMES]);
+        for (i, kept) in forces.iter_mut().enumerate().take(frames) {
+            let given = self.iter_mut().map(|cell| cell.bank.given()).sum();
+            *kept = player.force_on(i, given);
+            force[0] = *kept;
+            (now.push[0], now.pull[0], now.noise[0]) = (drive.push[i], drive.pull[i], drive.noise[i]);
+            let mut heard = [0.0; 2];
+            for cell in self.iter_mut() {
+                let [left, right] = cell.bank.render_played(Some(&now), Some(Player::Forces(&force)), 1);
+                heard = [heard[0] + left[0], heard[1] + right[0]];
+            }
+            self.sum.iter_mut().zip(heard).for_each(|(sum, heard)| sum[i] = heard);
+        }
+        forces
     }
 
     /// Like [`super::ModeBank::mass`], for the modes of the first cell: at most [`MAX_MODES`].

@@ -50,6 +50,8 @@ choices! {
         Impulse "impulse",
         /// As long as the mallet touches the body.
         Contact "contact",
+        /// The body pushes the mallet back through its felt.
+        Felt "felt",
     }
 
     /// What breath goes through into a tube.

@@ -35,8 +35,8 @@ table! {
     "Mallet" {
         MalletLevel "mallet_level" "Mallet level", Decibels -60.0..24.0 = 0.0, Linear, NextNote,
             "Strength of the mallet's strike; at -60 dB there is none.";
-        MalletPulse "mallet_pulse" "Mallet pulse", Choice[MalletPulse] 0.0..1.0 = 0.0, Linear, NextNote,
-            "The mallet's force: all of it in one sample, or over the time of its contact.";
+        MalletPulse "mallet_pulse" "Mallet pulse", Choice[MalletPulse] 0.0..2.0 = 0.0, Linear, NextNote,
+            "The mallet's force: all of it in one sample, over the time of its contact, or as the body pushes it back.";
         MalletHardness "mallet_hardness" "Mallet hardness", Percent 0.0..100.0 = 70.0, Linear, NextNote,
             "Contact time from 10 ms (0 %) to 0.05 ms (100 %).";
         MalletMass "mallet_mass" "Mallet mass", Number 0.1..10.0 = 1.0, Logarithmic, NextNote,

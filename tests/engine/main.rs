@@ -15,6 +15,7 @@ mod coupled_reference;
 mod damped_sine;
 mod events;
 mod exciters;
+mod hammers;
 mod host_events;
 mod in_blocks;
 mod in_motion;

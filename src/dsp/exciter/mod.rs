@@ -9,6 +9,7 @@
 
 mod bow;
 mod burst;
+mod hammer;
 mod pulse;
 mod valve;
 
@@ -16,6 +17,8 @@ use super::CONTROL_FRAMES;
 pub use bow::Bow;
 use burst::Burst;
 pub use burst::{BurstSetup, Colour, Decay};
+pub(crate) use hammer::MOST_GIVEN;
+pub use hammer::{Hammer, HammerLaw};
 use pulse::Pulse;
 pub use valve::{Breath, Valve, ValveLaw};
 
@@ -36,22 +39,29 @@ impl Drive {
         Drive { push: [0.0; CONTROL_FRAMES], pull: [0.0; CONTROL_FRAMES], noise: [0.0; CONTROL_FRAMES] };
 }
 
-/// What drives a body for as long as its note is held, by a force that depends on how the body moves.
+/// What drives a body by a force that depends on how the body moves: a hammer for as long as it touches, the others for as long as
+/// the note is held.
 #[derive(Debug)]
 pub enum Player<'a> {
     /// A bow.
     Bow(Bow),
     /// Breath through a valve.
     Breath(&'a mut Valve),
+    /// A hammer.
+    Hammer(&'a mut Hammer),
+    /// A force that was found before, in each frame.
+    Forces(&'a [f32; CONTROL_FRAMES]),
 }
 
 impl Player<'_> {
     /// The force in the frame that is `frame` frames after the next one. `motion` is the sum of the modes at the point of play: a
-    /// speed for a bow, a pressure for a valve.
+    /// speed for a bow, a pressure for a valve, a displacement for a hammer.
     pub(crate) fn force_on(&mut self, frame: usize, motion: f32) -> f32 {
         match self {
             Self::Bow(bow) => bow.force_on(frame, motion),
             Self::Breath(valve) => valve.flow(frame, motion),
+            Self::Hammer(hammer) => hammer.force_on(motion),
+            Self::Forces(forces) => forces[frame],
         }
     }
 }

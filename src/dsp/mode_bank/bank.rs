@@ -1,11 +1,11 @@
 //! The public interface of the bank: load modes, excite them, change their pitch and decay, render.
 
-use super::played::Played;
+use super::played::{Given, Played};
 use super::ring::Ring;
 use super::rows::{Form, Modes, Moving, Output, Row, State, Wide};
 use super::step::Step;
 use super::table::{Build, Table};
-use super::tuning::{Aim, ChordLoss, Displace, Settle, Tune, Tuning, UNIT};
+use super::tuning::{Aim, ChordLoss, Displace, Settle, TOP_ANGLE, Tune, Tuning, UNIT};
 use super::{ExcitationRows, LEAST_LN_RADIUS, MAX_MODES, MOST_LN_RADIUS, ModeRows};
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::coefficients::{LN_MINUS_60_DB, angle_from_frequency};
@@ -16,6 +16,9 @@ use crate::dsp::simd::vector::LANES;
 /// The bank makes tables after free ringing at one pitch for one control tick per this many modes. With few modes, the
 /// tables save the time that they cost within one tick, with 64 modes within about eight.
 const MODES_PER_TICK: usize = 8;
+
+/// A hammer leaves a mode alone that a push would make less loud than this: its displacement is not known well enough.
+const LEAST_PUSH: f64 = 1e-9;
 
 /// A bank of modes, as a structure of arrays. Real-time safe, except for the first [`ModeBank::new`], which detects the
 /// CPU.
@@ -130,8 +133,10 @@ impl ModeBank {
         [self.modes.left_step, self.modes.right_step] = [Row::ZERO; 2];
         for m in self.len..MAX_MODES {
             // Clears the modes after the last, which fill up lanes and tables and must stay at rest.
-            let Modes { push_x, push_y, pull_x, pull_y, noise_x, noise, take, give, .. } = &mut self.modes;
-            [push_x, push_y, pull_x, pull_y, noise_x, noise, take, give].into_iter().for_each(|row| row.0[m] = 0.0);
+            let Modes { push_x, push_y, pull_x, pull_y, noise_x, noise, take, take_y, give, .. } = &mut self.modes;
+            [push_x, push_y, pull_x, pull_y, noise_x, noise, take, take_y, give]
+                .into_iter()
+                .for_each(|row| row.0[m] = 0.0);
             // Otherwise every change of damping would multiply their coefficients by the last factor of an earlier mode, until
             // they are infinite and the product with a state of 0 is NaN.
             self.tuning.shrink.0[m] = 0.0;
@@ -195,7 +200,37 @@ impl ModeBank {
 
     /// Sets what mode `m` takes of a player's force, and what it gives of its displacement: see `played` for both.
     pub(crate) fn set_contact(&mut self, m: usize, take: f32, give: f32) {
-        (self.modes.take.0[m], self.modes.give.0[m]) = (take, give);
+        (self.modes.take.0[m], self.modes.take_y.0[m], self.modes.give.0[m]) = (take, 0.0, give);
+    }
+
+    /// Prepares mode `m` for a hammer that makes it as loud as a push does. `weight` is the speed that an impulse of 1 gives the
+    /// point of the strike by this mode. Returns how far a force of 1 in a frame moves the point by this mode: until the frame's
+    /// end, or, if the mode is too high to be rendered, for as long as the force lasts.
+    pub(crate) fn set_hammered(&mut self, m: usize, weight: f64) -> [f64; 2] {
+        let (push, angle) = (f64::from(self.modes.push_y.0[m]), 2.0 * self.half_angle[m] * self.ratio);
+        let is_rendered = angle < TOP_ANGLE;
+        if push.abs() < LEAST_PUSH || !is_rendered {
+            self.set_contact(m, 0.0, 0.0);
+            return [0.0, if is_rendered { 0.0 } else { weight / (angle * angle) }];
+        }
+        // The integral of e^(st) over a frame, (e^s − 1)/s, with s = ln r + iθ and e^s = 1 − α + iβ.
+        let (turned, [growth, norm]) = (
+            [-f64::from(self.modes.alpha.0[m]), f64::from(self.modes.beta.0[m])],
+            [self.ln_radius[m], self.ln_radius[m] * self.ln_radius[m] + angle * angle],
+        );
+        let along = (turned[0] * growth + turned[1] * angle) / norm;
+        let across = (turned[1] * growth - turned[0] * angle) / norm;
+        let Modes { take, take_y, give, .. } = &mut self.modes;
+        (take.0[m], take_y.0[m]) = ((push * across) as f32, (push * along) as f32);
+        give.0[m] = (weight / (push * angle)) as f32;
+        [weight * across / angle, 0.0]
+    }
+
+    /// What the modes give a player now.
+    pub(crate) fn given(&mut self) -> f32 {
+        self.leave_tables();
+        let Self { instructions, modes, states, current, live, .. } = self;
+        instructions.run(Given { modes, state: &states[*current], live: *live })
     }
 
     /// Changes the T60 of mode `m` to `t60` seconds, at once. Follow with [`ModeBank::sweep_to`].

@@ -15,7 +15,11 @@
 //! **Breath.** A mode's level says how much of its pressure is heard. So it gives the reciprocal of its level, and takes its
 //! share of the flow times its level: the breath feels the same tube, whatever is heard of it. See [`Valve`] for its energy.
 //!
+//! **Hammer.** Its force is constant within a frame, so that it acts on both coordinates, by what the mode has turned at the end
+//! of that frame. The force is known only then, and acts at the start of the next one. See [`Hammer`] for the energy.
+//!
 //! [`Valve`]: crate::dsp::exciter::Valve
+//! [`Hammer`]: crate::dsp::exciter::Hammer
 
 use super::MAX_MODES;
 use super::rows::{Form, Modes, Output, State};
@@ -53,6 +57,22 @@ impl Kernel for Played<'_, '_> {
             let [left, right, after] = turn::<V>(proof, modes, state, live, lines, forces, form.turned_noise);
             (out[0][i], out[1][i], motion) = (left, right, after);
         }
+    }
+}
+
+/// What the modes give the player, outside of [`Played`].
+pub(super) struct Given<'a> {
+    pub(super) modes: &'a Modes,
+    pub(super) state: &'a State,
+    pub(super) live: usize,
+}
+
+impl Kernel for Given<'_> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn run<V: Vector>(self, proof: V::Proof) -> f32 {
+        given::<V>(proof, self.modes, self.state, self.live.min(MAX_MODES))
     }
 }
 
@@ -96,6 +116,7 @@ fn turn<V: Vector>(
         x = push.mul_add(modes.push_x.at(proof, at), x);
         y = push.mul_add(modes.push_y.at(proof, at), pull.mul_add(modes.pull_y.at(proof, at), y));
         y = noise.mul_add(modes.noise.at(proof, at), y);
+        y = played.mul_add(modes.take_y.at(proof, at), y);
         if turned_noise {
             x = noise.mul_add(modes.noise_x.at(proof, at), x);
         }
@@ -120,6 +141,9 @@ fn turn<V: Vector>(
     sums
 }
 
+#[cfg(test)]
+#[path = "hammer_tests.rs"]
+mod hammer_tests;
 #[cfg(test)]
 #[path = "played_tests.rs"]
 mod tests;

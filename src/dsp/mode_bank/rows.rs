@@ -60,8 +60,9 @@ pub(super) struct Modes {
     pub(super) pull_y: Row,
     pub(super) noise_x: Row,
     pub(super) noise: Row,
-    /// What each mode takes of a player's force, and what it gives of its displacement.
+    /// What each mode takes of a player's force, and what it gives of its displacement. Only a hammer's force acts on `y` too.
     pub(super) take: Row,
+    pub(super) take_y: Row,
     pub(super) give: Row,
 }
 
@@ -82,6 +83,7 @@ impl Modes {
         noise_x: Row::ZERO,
         noise: Row::ZERO,
         take: Row::ZERO,
+        take_y: Row::ZERO,
         give: Row::ZERO,
     };
 }

@@ -6,6 +6,7 @@ mod bowing;
 mod clock;
 mod decay;
 mod energy;
+mod hammering;
 mod held_noise;
 mod input;
 pub(super) mod key_tracking;
@@ -173,10 +174,17 @@ impl SynthVoice {
                 self.move_controls(base, wheels, frames);
             }
         }
+        instrument.into_iter().for_each(|instrument| self.begin_hammer(instrument));
         self.pitch.aim(&self.controls, &bends, &self.clock, frames);
         self.aim_gain(start, wheels, frames);
         self.control_driven(instrument, frames);
         self.fresh = false;
+    }
+
+    /// Lets a hammer fly that waits for the pitch of the modes.
+    fn begin_hammer(&mut self, instrument: &Instrument) {
+        let values = StruckValues { instrument, modulators: &self.modulators, table: self.table };
+        self.strike.hammering.begin(&values, self.pitch.frequency(), &mut self.bank);
     }
 
     /// Starts the ramps of bow, breath, noise and input, which end in `frames` frames.
@@ -357,6 +365,10 @@ impl SynthVoice {
             self.modulators.shade((2.0 * self.brightness) as f32);
             let values = StruckValues { instrument, modulators: &self.modulators, table: self.table };
             self.energy.expect(self.strike.set_gains(&values, &mut self.bank));
+            self.strike.hammering.prepare_again();
+            if !self.fresh {
+                self.begin_hammer(instrument);
+            }
         }
     }
 }

@@ -157,6 +157,7 @@ impl Voice for SynthVoice {
         }
         self.slide(Some(instrument), note, note.is_legato);
         self.excite(instrument, note);
+        self.begin_hammer(instrument);
         self.separation.iter_mut().for_each(|separation| separation.add(note, &self.strike, &self.bank));
         self.pitch.restart(self.controls.vibrato_rate, passed);
         self.clock.strike();

@@ -1,8 +1,9 @@
 //! Strikes on one voice, told apart for labels: what each of them has given the modes, while others still ring or act.
 
 use super::strike::Strike;
+use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::cells::Cells;
-use crate::dsp::exciter::Drive;
+use crate::dsp::exciter::{Drive, Player};
 use crate::engine::note::Note;
 
 /// A strike, and modes that hear it alone.
@@ -16,7 +17,7 @@ pub(super) struct SeparateStrike {
 impl SeparateStrike {
     /// Whether any of its forces is still to come.
     pub(super) fn is_acting(&self, strike: &Strike) -> bool {
-        self.blow.is_some_and(|blow| strike.exciter().is_acting(blow))
+        self.blow.is_some_and(|blow| strike.is_acting(blow))
     }
 }
 
@@ -58,14 +59,21 @@ impl Separation {
 
     /// Renders the next frames of each strike's own modes. The voice's modes are about to render the same frames.
     pub(super) fn render(&mut self, strike: &Strike, modes: &Cells, frames: usize) {
+        let (is_hammered, mut forces) = (strike.hammering.is_on() && !self.strikes.is_empty(), [0.0; CONTROL_FRAMES]);
+        if is_hammered {
+            let (mut hammer, mut all, mut drive) = (strike.hammering.hammer, modes.clone(), Drive::NONE);
+            strike.exciter().clone().fill(frames, &mut drive);
+            forces = all.render_hammered(&drive, &mut Player::Hammer(&mut hammer), frames);
+        }
         for share in &mut self.strikes {
             let mut drive = Drive::NONE;
             if let Some(blow) = share.blow {
                 strike.exciter().only(blow).fill(frames, &mut drive);
             }
+            let forces = if share.blow == Some(strike.exciter().newest()) { &forces } else { &[0.0; CONTROL_FRAMES] };
             let before = std::mem::replace(&mut share.modes, modes.clone());
             share.modes.take_state_of(&before);
-            share.modes.render(Some(&drive), None, frames);
+            share.modes.render(Some(&drive), is_hammered.then_some(Player::Forces(forces)), frames);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::blowing::Blowing;
 use super::bowing::Bowing;
+use super::hammering::{self, Hammering};
 use super::held_noise::HeldNoise;
 use super::input::Input;
 use super::values::{StruckValues, ratios};
@@ -14,7 +15,7 @@ use crate::dsp::series::sines;
 use crate::engine::gain::exciter_gain;
 use crate::engine::note::Note;
 use crate::engine::voice_manager::Unison;
-use crate::params::{Choice, MalletPulse, NoiseDecay, Param};
+use crate::params::{Choice, Coefficients, MalletPulse, NoiseDecay, Param};
 use crate::patch::ModeTable;
 use crate::sound::contact::{contact_time, hertz};
 use libm::{fabs, pow, sqrt};
@@ -46,6 +47,7 @@ pub(super) struct Strike {
     variation: Variation,
     /// Stream of random numbers of the last strike.
     key: u64,
+    pub(super) hammering: Hammering,
     pub(super) bowing: Bowing,
     pub(super) blowing: Blowing,
     pub(super) input: Input,
@@ -66,6 +68,7 @@ impl Strike {
             phase: 0.0,
             variation: Variation::NONE,
             key: 0,
+            hammering: Hammering::OFF,
             bowing: Bowing::OFF,
             blowing: Blowing::OFF,
             input: Input::OFF,
@@ -77,7 +80,7 @@ impl Strike {
     pub(super) fn start(&mut self) {
         self.exciter = Exciter::REST;
         (self.forces, self.energy, self.phase) = ([0.0; 3], 0.0, 0.0);
-        (self.bowing, self.blowing) = (Bowing::OFF, Blowing::OFF);
+        (self.hammering, self.bowing, self.blowing) = (Hammering::OFF, Bowing::OFF, Blowing::OFF);
         (self.input, self.held_noise) = (Input::OFF, HeldNoise::OFF);
     }
 
@@ -88,7 +91,13 @@ impl Strike {
 
     /// Whether any force is still to come.
     pub(super) fn is_active(&self) -> bool {
-        self.exciter.is_active()
+        self.exciter.is_active() || self.hammering.is_on()
+    }
+
+    /// Whether any force of the strike with this number in the exciter is still to come.
+    pub(super) fn is_acting(&self, blow: usize) -> bool {
+        let is_newest = blow == self.exciter.newest();
+        self.exciter.is_acting(blow) || (is_newest && self.hammering.is_on())
     }
 
     /// The energy of a full strike: like the last one, but at full velocity and without routes. 1 if mallet, pluck and noise
@@ -109,11 +118,11 @@ impl Strike {
 
     /// Frames until no force is left.
     pub(super) fn frames_left(&self) -> u32 {
-        self.exciter.frames_left()
+        self.exciter.frames_left().max(self.hammering.frames_left())
     }
 
     /// The forces of the next frames, if there are any: those of strikes and of the incoming sound, and the player's. `input` is
-    /// the incoming sound: empty, or one sample for each frame. Breath takes the place of a bow.
+    /// the incoming sound: empty, or one sample for each frame. Breath takes the place of a bow, and both end the touch of a hammer.
     pub(super) fn forces(&mut self, frames: usize, input: &[f32]) -> (Option<&Drive>, Option<Player<'_>>) {
         let is_noisy = self.held_noise.is_on();
         let is_driven = self.exciter.is_active() || (self.input.is_on() && !input.is_empty()) || is_noisy;
@@ -125,10 +134,12 @@ impl Strike {
             }
         }
         let bow = self.bowing.stroke(frames);
-        let player = match self.blowing.blow(frames) {
-            Some(valve) => Some(Player::Breath(valve)),
-            None => bow.map(Player::Bow),
-        };
+        let breath = self.blowing.blow(frames);
+        if breath.is_some() || bow.is_some() {
+            self.hammering = Hammering::OFF;
+        }
+        let hammer = Some(&mut self.hammering.hammer).filter(|hammer| hammer.is_there());
+        let player = breath.map(Player::Breath).or(bow.map(Player::Bow)).or(hammer.map(Player::Hammer));
         (is_driven.then_some(&self.drive), player)
     }
 
@@ -136,6 +147,7 @@ impl Strike {
     pub(super) fn set_gains(&mut self, values: &StruckValues, bank: &mut Cells) -> f64 {
         let table = values.modes();
         let [mallet, pluck, burst] = self.forces;
+        let mallet = if self.hammering.is_on() { hammering::MOST * mallet } else { mallet };
         let [full_mallet, full_pluck, full_burst] = self.full_forces;
         let reach = values.share(Param::NoiseReach);
         let turned_noise = table.has_phases();
@@ -202,6 +214,20 @@ impl Strike {
         })
     }
 
+    /// Whether a hammer strikes, which the body pushes back. Bow and breath need the contacts of the modes for themselves, the
+    /// formulas of the seed have none, and modes with phases do not say where they are displaced.
+    fn is_felt(&self, values: &StruckValues, note: &Note) -> bool {
+        let knobs = &values.instrument.knobs;
+        knobs.choice::<MalletPulse>(Param::MalletPulse) == MalletPulse::Felt
+            && note.contact.is_none()
+            && self.phase == 0.0
+            && self.forces[0] > 0.0
+            && !values.modes().has_phases()
+            && knobs.choice::<Coefficients>(Param::Coefficients) == Coefficients::Exact
+            && exciter_gain(values.get(Param::BowLevel)) == 0.0
+            && !self.blowing.may_blow()
+    }
+
     /// Reads the strike's parameters and starts the exciters. `frequency` is the note's, in Hz. Returns the energy that the
     /// strike adds.
     pub(super) fn strike(
@@ -242,18 +268,25 @@ impl Strike {
         self.held_noise.strike(values, key, burst);
         // The energy of earlier strikes has been counted already.
         self.energy = 0.0;
-        let more = self.set_gains(values, bank);
-
+        let varied = self.variation.hardness;
         let hardness = |param| {
-            let hardness = (values.share(param) + self.variation.hardness).clamp(0.0, 1.0);
+            let hardness = (values.share(param) + varied).clamp(0.0, 1.0);
             if note.soft { hardness * (1.0 - SOFT_HARDNESS) } else { hardness }
         };
         let sample_rate = values.instrument.sample_rate;
         let frames = |seconds: f64| frames(seconds, sample_rate);
-        let speed = mallet * sqrt(count as f64);
-        let pushing = mallet_frames(values, note, hardness(Param::MalletHardness), speed, frequency);
+        let is_felt = self.is_felt(values, note);
+        let speed = if is_felt { 1.0 } else { mallet * sqrt(count as f64) };
+        let contact = mallet_seconds(values, note, hardness(Param::MalletHardness), speed, frequency);
+        self.hammering = Hammering::OFF;
+        let mut push = (self.forces[0] as f32, frames(contact));
+        if is_felt {
+            push = (0.0, 1);
+            self.hammering.strike(values, [self.forces[0], self.full_forces[0]], contact * sample_rate);
+        }
+        let more = self.set_gains(values, bank);
         let stroke = Stroke {
-            push: (self.forces[0] as f32, pushing),
+            push,
             pull: (self.forces[1] as f32, frames(contact_time(hardness(Param::PluckHardness)))),
             noise: BurstSetup {
                 force: if self.is_noisy { self.forces[2] as f32 } else { 0.0 },
@@ -283,20 +316,19 @@ pub(super) fn most_nudged(values: &StruckValues, m: usize, count: usize) -> f64 
     values.tilted_levels().as_flattened().get(m).map_or(0.0, |level| force * fabs(*level))
 }
 
-/// Contact time of the mallet in frames, for a speed from 0 to 1 and a note's frequency in Hz.
-fn mallet_frames(values: &StruckValues, note: &Note, hardness: f64, speed: f64, frequency: f64) -> u32 {
-    let sample_rate = values.instrument.sample_rate;
+/// Contact time of the mallet in seconds, for a speed from 0 to 1 and a note's frequency in Hz.
+fn mallet_seconds(values: &StruckValues, note: &Note, hardness: f64, speed: f64, frequency: f64) -> f64 {
     if let Some(contact) = note.contact {
-        return frames(contact.seconds.into(), sample_rate);
+        return contact.seconds.into();
     }
     if values.instrument.knobs.choice::<MalletPulse>(Param::MalletPulse) == MalletPulse::Impulse {
-        return 1;
+        return 0.0;
     }
     let stretch = hertz(values.get(Param::MalletMass), speed, values.share(Param::MalletSpeed));
     let contact = contact_time(hardness) * stretch;
     let by_key = values.share(Param::MalletKey);
     let shortened = if by_key > 0.0 { pow((1.0 / (frequency.max(1.0) * contact)).min(1.0), by_key) } else { 1.0 };
-    frames(contact * shortened, sample_rate)
+    contact * shortened
 }
 
 fn frames(seconds: f64, sample_rate: f64) -> u32 {

@@ -283,9 +283,12 @@ impl Part {
         // The longest pulse lasts 10 ms; ten times as long where mass and speed make it longer.
         let is_plain = self.value(Param::MalletMass) <= 1.0 && self.value(Param::MalletSpeed) == 0.0;
         let pulse = if is_plain { 0.01 } else { 0.101 } * sample_rate;
+        // A hammer is caught after 50 ms, and gives at most twice the area of its strike.
+        let is_felt = self.value(Param::MalletPulse) == 2.0;
+        let (pulse, hammered) = if is_felt { (0.05 * sample_rate, 2.0) } else { (pulse, 1.0) };
         let end = u64::from(event.frame) + noise.frames().max(pulse) as u64 + 2;
         let forces = [
-            force(Param::MalletVelocity) * self.level(Param::MalletLevel),
+            hammered * force(Param::MalletVelocity) * self.level(Param::MalletLevel),
             force(Param::PluckVelocity) * self.level(Param::PluckLevel),
             force(Param::NoiseVelocity) * self.level(Param::NoiseLevel) * noise.most(is_exact),
         ];
