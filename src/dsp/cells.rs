@@ -185,14 +185,27 @@ impl Cells {
         }
     }
 
-    /// Like [`super::ModeBank::set_hammered`], for all modes: `weight` tells that of a mode by its number. Returns the sums.
+    /// Like [`super::ModeBank::set_touched`], for all modes and a hammer, whose impulse makes them as loud as a push does: `weight`
+    /// tells that of a mode by its number. Returns the sums.
     pub(crate) fn set_hammered(&mut self, weight: impl Fn(usize) -> f64) -> [f64; 2] {
         let mut total = [0.0; 2];
         for (cell, Cell { bank, .. }) in self.iter_mut().enumerate() {
             for m in 0..bank.len() {
-                let own = bank.set_hammered(m, weight(cell * MAX_MODES + m));
+                let own = bank.set_touched(m, None, weight(cell * MAX_MODES + m));
                 total = [total[0] + own[0], total[1] + own[1]];
             }
+        }
+        total
+    }
+
+    /// Like [`super::ModeBank::set_touched`], for the first [`MAX_MODES`] modes. `touch` tells push and weight of a mode by its number.
+    /// Returns the sum of what the modes give way.
+    pub(crate) fn set_touched(&mut self, touch: impl Fn(usize) -> [f64; 2]) -> f64 {
+        let Some(Cell { bank, .. }) = self.iter_mut().next() else { return 0.0 };
+        let mut total = 0.0;
+        for m in 0..bank.len() {
+            let [push, weight] = touch(m);
+            total += bank.set_touched(m, Some(push), weight).iter().sum::<f64>();
         }
         total
     }

@@ -54,6 +54,16 @@ choices! {
         Felt "felt",
     }
 
+    /// What a body hits as it swings.
+    Rattle {
+        /// Nothing.
+        Off "off",
+        /// An edge that does not move.
+        Edge "edge",
+        /// A mass that lies on the body.
+        Loose "loose",
+    }
+
     /// What breath goes through into a tube.
     Valve {
         /// A reed, which the breath closes.
@@ -237,6 +247,7 @@ mod tests {
     #[test]
     fn every_choice_is_its_value_and_its_name() {
         check::<MalletPulse>();
+        check::<Rattle>();
         check::<Valve>();
         check::<NoiseDecay>();
         check::<NoteOff>();
@@ -255,6 +266,7 @@ mod tests {
         let lists = [
             MalletPulse::NAMES,
             Valve::NAMES,
+            Rattle::NAMES,
             NoiseDecay::NAMES,
             NoteOff::NAMES,
             Coefficients::NAMES,

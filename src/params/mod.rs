@@ -87,7 +87,7 @@ mod values;
 
 pub use choice::{
     Choice, Coefficients, GlideBy, GlideWhen, Limiter, MalletPulse, NoiseDecay, NoteOff, NoteValue, PlayMode, Priority,
-    Scope, Shape, Space, SpaceMaterial, StringsTuning, Valve,
+    Rattle, Scope, Shape, Space, SpaceMaterial, StringsTuning, Valve,
 };
 pub use table::{PARAM_COUNT, PARAMS, Param};
 pub use values::Values;

@@ -112,6 +112,20 @@ table! {
         BreathTongue "breath_tongue" "Breath tongue", Percent 0.0..100.0 = 25.0, Linear, NextNote,
             "How much more pressure the tongue lets go at the start, for a twentieth of a second.";
     }
+    "Rattle" {
+        Rattle "rattle" "Rattle", Choice[Rattle] 0.0..2.0 = 0.0, Linear, NextNote,
+            "What the lowest 64 modes hit as they swing: nothing, an edge beside the body, or a loose mass that lies on it.";
+        RattleGap "rattle_gap" "Rattle gap", Percent 0.0..100.0 = 3.0, Linear, NextNote,
+            "Distance of the edge from the body at rest, as a share of its swing after a full strike.";
+        RattleMass "rattle_mass" "Rattle mass", Number 0.01..10.0 = 0.1, Logarithmic, NextNote,
+            "Weight of the loose mass, in the unit of the mallet's.";
+        RattleRate "rattle_rate" "Rattle rate", Hertz 1.0..500.0 = 30.0, Logarithmic, NextNote,
+            "How often the loose mass hits after a full strike: a tight spring brings it back soon.";
+        RattleHardness "rattle_hardness" "Rattle hardness", Percent 0.0..100.0 = 80.0, Linear, NextNote,
+            "Contact time of each hit, from 10 ms (0 %) to 0.05 ms (100 %).";
+        RattlePosition "rattle_position" "Rattle position", Percent 1.0..50.0 = 12.0, Linear, NextNote,
+            "Where along the string it touches.";
+    }
     "Input" {
         InputLevel "input_level" "Input level", Decibels -60.0..24.0 = -60.0, Linear, Smoothed(20),
             "Force of what comes in as sound on the modes of notes whose keys are held; at -60 dB there is none.";

@@ -1,4 +1,4 @@
-//! Hammers in whole notes: how they follow velocity and what they meet.
+//! What touches a body in whole notes: how hammers follow velocity and what they meet, and what rattles.
 
 use crate::events::off;
 use sprung::engine::{Event, Synth};
@@ -90,4 +90,65 @@ fn where_no_hammer_can_strike_a_contact_does() {
         let [felt, contact] = [felt, contact].map(|patch| render(&patch, &[Event::note_on(0, 60, 1.0)], 4800));
         assert!(felt == contact && rms(&felt) > 1e-3, "{param:?}");
     }
+}
+
+/// A plucked string of `count` partials, and what it hits.
+fn rattling(kind: f32, gap: f32) -> Patch {
+    let mode = |n: u16| Mode { ratio: n.into(), level: 0.05, ..Mode::UNIT };
+    Patch { modes: ModeTable::new(&(1..=40).map(mode).collect::<Vec<_>>()), ..Patch::default() }
+        .with(Param::MalletLevel, -60.0)
+        .with(Param::PluckLevel, 0.0)
+        .with(Param::PluckPosition, 20.0)
+        .with(Param::PluckHardness, 25.0)
+        .with(Param::Decay, 3.0)
+        .with(Param::Limiter, 0.0)
+        .with(Param::Rattle, kind)
+        .with(Param::RattleGap, gap)
+        .with(Param::RattlePosition, 3.0)
+        .with(Param::RattleHardness, 95.0)
+}
+
+/// A string that beats on an edge loses little, but has more of it in its high partials; a soft stroke does not reach the edge.
+#[test]
+fn an_edge_buzzes_when_the_string_reaches_it() {
+    let play = |patch: &Patch, velocity| render(patch, &[Event::note_on(0, 48, velocity)], 48_000);
+    let (free, edge) = (play(&rattling(0.0, 6.0), 1.0), play(&rattling(1.0, 6.0), 1.0));
+    let late = 12_000..24_000;
+    let [plain, buzz] = [&free, &edge].map(|sound| brightness(&sound[late.clone()]));
+    assert!(buzz > 3.0 * plain, "{buzz} {plain}");
+    assert!((rms(&edge) / rms(&free) - 1.0).abs() < 0.1, "{} {}", rms(&edge), rms(&free));
+    let [soft, soft_edge] = [0.0, 1.0].map(|kind| play(&rattling(kind, 6.0), 0.15));
+    let apart: Vec<_> = soft.iter().zip(&soft_edge).map(|(free, edge)| free - edge).collect();
+    assert!(rms(&soft) > 1e-4 && rms(&apart) < 1e-4 * rms(&soft), "{} {}", rms(&apart), rms(&soft));
+}
+
+/// A loose mass clatters, and the note ends all the same.
+#[test]
+fn a_loose_mass_clatters_and_comes_to_rest() {
+    let loose = rattling(2.0, 0.0).with(Param::RattlePosition, 12.0);
+    let sound = render(&loose, &[Event::note_on(0, 48, 1.0), off(48_000, 48)], 480_000);
+    let free = render(&rattling(0.0, 20.0), &[Event::note_on(0, 48, 1.0)], 48_000);
+    assert!(brightness(&sound[4000..24_000]) > 3.0 * brightness(&free[4000..24_000]));
+    assert!(sound.iter().all(|sample| sample.abs() < 4.0));
+    assert!(sound[470_000..].iter().all(|sample| *sample == 0.0), "the voice is over");
+}
+
+/// Blocks of any length give the same bits, with a hammer before the rattle.
+#[test]
+fn a_rattle_sounds_the_same_in_blocks() {
+    let patch = rattling(2.0, 20.0).with(Param::MalletLevel, 0.0).with(Param::MalletPulse, FELT);
+    let events = [Event::note_on(100, 48, 0.9), Event::note_on(5000, 48, 0.6)];
+    let whole = render(&patch, &events, 20_000);
+    let mut synth = Synth::new(RATE, 1);
+    synth.set_patch(&patch);
+    let mut parts = vec![];
+    for start in (0..20_000_u32).step_by(77) {
+        let frames = 77.min(20_000 - start);
+        let here = events.iter().filter(|event| (start..start + frames).contains(&event.frame));
+        let here: Vec<_> = here.map(|event| Event { frame: event.frame - start, ..*event }).collect();
+        let (mut left, mut right) = (vec![0.0; frames as usize], vec![0.0; frames as usize]);
+        synth.process(&here, &mut left, &mut right);
+        parts.extend(left);
+    }
+    assert!(parts == whole && rms(&whole) > 1e-3);
 }

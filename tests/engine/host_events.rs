@@ -274,14 +274,15 @@ fn frames_to_silence(synth: &mut Synth) -> u64 {
     frames - 1
 }
 
-/// Whether oscillators or envelopes modulate a patch, or a bow, breath, noise or audio input drives it while a key is held: then its end is
-/// unknown.
+/// Whether oscillators or envelopes modulate a patch, something rattles, or a bow, breath, noise or audio input drives it while a key
+/// is held: then its end is unknown.
 fn is_moving(patch: &Patch) -> bool {
     use Source::{Envelope1, Envelope2, Lfo1, Lfo2, Lfo3};
     let moves = |source| matches!(source, Lfo1 | Lfo2 | Lfo3 | Envelope1 | Envelope2);
     let drives =
         |param: &Param| patch.get(*param) > -60.0 || patch.routes.iter().any(|(_, route)| route.destination == *param);
     [Param::BowLevel, Param::BreathLevel, Param::NoiseHeld, Param::InputLevel].iter().any(drives)
+        || patch.get(Param::Rattle) > 0.0
         || patch.routes.iter().any(|(_, route)| moves(route.source) || route.scale.is_some_and(moves))
 }
 

@@ -304,7 +304,8 @@ fn what_a_host_moves_of_a_sounding_note_slides_all_the_way() {
 }
 
 /// A patch in five forms: every parameter is audible in at least one of them, and many sources are routed to the pitch. The forms
-/// are excited by an impulse, by a mallet's contact, by a pluck, by noise and a bow, and by breath.
+/// are excited by an impulse, by a mallet's contact, by a pluck, by noise and a bow, and by breath;
+/// in two of them, something rattles.
 fn busy(form: usize) -> Patch {
     let pitch = [
         Source::Lfo1,
@@ -336,6 +337,8 @@ fn busy(form: usize) -> Patch {
         (BowLevel, if form == 3 { -12.0 } else { -60.0 }),
         (BreathLevel, if form == 4 { -12.0 } else { -60.0 }),
         (BreathNoise, 5.0),
+        (Rattle, [0.0, 2.0, 1.0, 0.0, 0.0][form]),
+        (RattleGap, 0.5),
         (Velocity, 50.0),
         (Sweep, 12.0),
         (SweepTime, 0.2),

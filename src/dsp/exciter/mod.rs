@@ -9,8 +9,10 @@
 
 mod bow;
 mod burst;
+mod felt;
 mod hammer;
 mod pulse;
+mod rattle;
 mod valve;
 
 use super::CONTROL_FRAMES;
@@ -20,6 +22,7 @@ pub use burst::{BurstSetup, Colour, Decay};
 pub(crate) use hammer::MOST_GIVEN;
 pub use hammer::{Hammer, HammerLaw};
 use pulse::Pulse;
+pub use rattle::{Rattle, RattleKind, RattleLaw};
 pub use valve::{Breath, Valve, ValveLaw};
 
 /// The forces of up to [`CONTROL_FRAMES`] frames.
@@ -39,8 +42,8 @@ impl Drive {
         Drive { push: [0.0; CONTROL_FRAMES], pull: [0.0; CONTROL_FRAMES], noise: [0.0; CONTROL_FRAMES] };
 }
 
-/// What drives a body by a force that depends on how the body moves: a hammer for as long as it touches, the others for as long as
-/// the note is held.
+/// What drives a body by a force that depends on how the body moves: a hammer for as long as it touches, a rattle
+/// while the body swings, the others for as long as the note is held.
 #[derive(Debug)]
 pub enum Player<'a> {
     /// A bow.
@@ -49,18 +52,21 @@ pub enum Player<'a> {
     Breath(&'a mut Valve),
     /// A hammer.
     Hammer(&'a mut Hammer),
+    /// Something that rattles.
+    Rattle(&'a mut Rattle),
     /// A force that was found before, in each frame.
     Forces(&'a [f32; CONTROL_FRAMES]),
 }
 
 impl Player<'_> {
     /// The force in the frame that is `frame` frames after the next one. `motion` is the sum of the modes at the point of play: a
-    /// speed for a bow, a pressure for a valve, a displacement for a hammer.
+    /// speed for a bow, a pressure for a valve, a displacement for a hammer or a rattle.
     pub(crate) fn force_on(&mut self, frame: usize, motion: f32) -> f32 {
         match self {
             Self::Bow(bow) => bow.force_on(frame, motion),
             Self::Breath(valve) => valve.flow(frame, motion),
             Self::Hammer(hammer) => hammer.force_on(motion),
+            Self::Rattle(rattle) => rattle.force_on(motion),
             Self::Forces(forces) => forces[frame],
         }
     }

@@ -17,7 +17,7 @@ use crate::dsp::simd::vector::LANES;
 /// tables save the time that they cost within one tick, with 64 modes within about eight.
 const MODES_PER_TICK: usize = 8;
 
-/// A hammer leaves a mode alone that a push would make less loud than this: its displacement is not known well enough.
+/// What touches leaves a mode alone that a push would make less loud than this: its displacement is not known well enough.
 const LEAST_PUSH: f64 = 1e-9;
 
 /// A bank of modes, as a structure of arrays. Real-time safe, except for the first [`ModeBank::new`], which detects the
@@ -203,11 +203,16 @@ impl ModeBank {
         (self.modes.take.0[m], self.modes.take_y.0[m], self.modes.give.0[m]) = (take, 0.0, give);
     }
 
-    /// Prepares mode `m` for a hammer that makes it as loud as a push does. `weight` is the speed that an impulse of 1 gives the
-    /// point of the strike by this mode. Returns how far a force of 1 in a frame moves the point by this mode: until the frame's
-    /// end, or, if the mode is too high to be rendered, for as long as the force lasts.
-    pub(crate) fn set_hammered(&mut self, m: usize, weight: f64) -> [f64; 2] {
-        let (push, angle) = (f64::from(self.modes.push_y.0[m]), 2.0 * self.half_angle[m] * self.ratio);
+    /// What a push of 1 gives mode `m`.
+    pub(crate) fn push(&self, m: usize) -> f64 {
+        self.modes.push_y.0[m].into()
+    }
+
+    /// Prepares mode `m` for what touches the body: an impulse of 1 gives it the amplitude `push`, and the point of touch, by this
+    /// mode, the speed `weight`. Returns how far a force of 1 in a frame moves the point by this mode: until the frame's end, or,
+    /// if the mode is too high to be rendered, for as long as the force lasts.
+    pub(crate) fn set_touched(&mut self, m: usize, push: f64, weight: f64) -> [f64; 2] {
+        let angle = 2.0 * self.half_angle[m] * self.ratio;
         let is_rendered = angle < TOP_ANGLE;
         if push.abs() < LEAST_PUSH || !is_rendered {
             self.set_contact(m, 0.0, 0.0);

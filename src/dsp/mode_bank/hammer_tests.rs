@@ -1,7 +1,7 @@
 //! Tests of a hammer on a bank: its energy, and pianos beside a converged solution of the same equations.
 
 use crate::dsp::CONTROL_FRAMES;
-use crate::dsp::exciter::{Hammer, HammerLaw, Player};
+use crate::dsp::exciter::{Drive, Hammer, HammerLaw, Player, Rattle, RattleKind, RattleLaw};
 use crate::dsp::mode_bank::{ExcitationGains, ExcitationRows, MAX_MODES, ModeBank, ModeSetup};
 use crate::dsp::random::{key, uniform};
 use std::f64::consts::{PI, TAU};
@@ -21,7 +21,7 @@ fn struck(partials: &[Partial], push: f32, law: HammerLaw, rate: f64) -> (ModeBa
     bank.jump_to(1.0);
     let (mut compliance, mut stillness) = (0.0, law.stillness);
     for (m, (.., weight)) in partials.iter().enumerate() {
-        let [own, still] = bank.set_hammered(m, *weight);
+        let [own, still] = bank.set_touched(m, push.into(), *weight);
         (compliance, stillness) = (compliance + own, stillness + still);
     }
     (bank, Hammer::new(HammerLaw { compliance, stillness, ..law }))
@@ -84,6 +84,68 @@ fn a_hammer_and_its_body_gain_nothing() {
         touched += u32::from(energy(&bank, &hammer) - hammer.energy() > 1e-3 * first);
     }
     assert!(touched > 3000, "hammers moved bodies: {touched}");
+}
+
+/// For all edges and loose masses on all bodies, which lose nothing themselves, modes and rattle together never gain energy.
+#[test]
+fn a_rattle_and_its_body_gain_nothing() {
+    let (mut hits, mut kept) = (0, 0.0);
+    for seed in 0..SETTINGS {
+        let mut count = 0;
+        let mut next = || {
+            count += 1;
+            f64::from(uniform(key(82, seed), count)) * 0.5 + 0.5
+        };
+        let mut spread = |decades: f64| libm::pow(10.0, decades * (next() - 0.5));
+        let rate = 80_000.0 * spread(2.0);
+        let len = 1 + (MAX_MODES as f64 * spread(2.0) * 0.1) as usize;
+        let partials: Vec<Partial> =
+            (0..len.min(MAX_MODES)).map(|_| (0.05 * rate * spread(2.2), 1e5, spread(6.0))).collect();
+        let push = spread(4.0) as f32;
+        let (mut bank, _) = struck(&partials, push, HammerLaw::NONE, rate);
+        let compliance = partials
+            .iter()
+            .enumerate()
+            .fold(0.0, |sum, (m, (.., weight))| sum + bank.set_touched(m, push.into(), *weight).iter().sum::<f64>());
+        // The body swings before it meets the rattle.
+        let force = spread(4.0);
+        let mut drive = Drive::NONE;
+        drive.push[0] = force as f32;
+        bank.sweep_to(1.0, CONTROL_FRAMES);
+        bank.render(Some(&drive), CONTROL_FRAMES);
+        let speed = force * partials.iter().map(|(.., weight)| weight).sum::<f64>();
+        let kind = if seed % 2 == 0 {
+            RattleKind::Edge { gap: speed * spread(6.0) }
+        } else {
+            RattleKind::Loose { mass: spread(6.0), pull: speed * 0.01 * spread(4.0) }
+        };
+        let law = RattleLaw { kind, speed: speed * spread(2.0), contact: 30.0 * spread(5.0), compliance };
+        let mut rattle = Rattle::new(law);
+        let body = |bank: &ModeBank| -> f64 {
+            let of = |(m, (.., weight)): (usize, &Partial)| f64::from(bank.mass(m).1) * weight;
+            0.5 * partials.iter().enumerate().map(of).sum::<f64>() / f64::from(push * push)
+        };
+        let mut first = None;
+        for i in 0..200 {
+            if i % CONTROL_FRAMES == 0 {
+                bank.sweep_to(1.0, CONTROL_FRAMES);
+            }
+            bank.render_played(None, Some(Player::Rattle(&mut rattle)), 1);
+            let now = body(&bank) + rattle.energy();
+            // A rattle begins in its first two frames.
+            let (most, size) = *first.get_or_insert((now, body(&bank) + rattle.energy().abs()));
+            if i < 2 {
+                first = None;
+                continue;
+            }
+            // Single precision rounds each turn, and the displacement of the point.
+            assert!(now <= most + 1e-6 * i as f64 * size, "{seed}, frame {i}: {now} of {most}\n{law:?}\n{rattle:?}");
+        }
+        let lost = first.map_or(0.0, |(most, _)| 1.0 - body(&bank) / most);
+        hits += u32::from(lost > 1e-3);
+        kept += f64::from(u32::from(lost < 1.0));
+    }
+    assert!(hits > 1000 && kept > 5000.0, "rattles met bodies: {hits}, {kept}");
 }
 
 /// A string of Chaigne and Askenfelt, "Numerical simulations of piano strings" II, JASA 95 (1994), table I: fundamental, mass,

@@ -5,6 +5,7 @@ use crate::dsp::cells::{Cells, MAX_CELLS};
 use crate::dsp::exciter::{Hammer, HammerLaw, MOST_GIVEN};
 use crate::dsp::mode_bank::MAX_MODES;
 use crate::params::Param;
+use crate::patch::Mode;
 use libm::sin;
 use std::f64::consts::PI;
 
@@ -16,7 +17,7 @@ const HEAVINESS: f64 = 0.0012;
 const PLACE: f64 = 0.12;
 
 /// Modes whose ratios differ by less than this share are the same partial of several strings, which share the hammer.
-const CHOIR: f64 = 0.005;
+const CHOIR: f32 = 0.005;
 
 /// Area of a hammer's force over its momentum: a piano's hammer comes back with half of its speed, more or less, so that a strike
 /// is as loud as one by another pulse.
@@ -62,19 +63,7 @@ impl Hammering {
         if !std::mem::take(&mut self.is_waiting) {
             return;
         }
-        let modes = values.modes().as_slice();
-        let strength = 4.0 * frequency * HEAVINESS;
-        let mut weights = [0.0; MAX_CELLS * MAX_MODES];
-        let mut from = 0;
-        while from < modes.len() {
-            let first = modes[from].ratio * (1.0 + CHOIR as f32);
-            let choir = &modes[from..];
-            let choir = &choir[..choir.iter().position(|mode| mode.ratio > first).unwrap_or(choir.len())];
-            let struck = choir.iter().filter(|mode| mode.strike > 0.0).count().max(1);
-            let shape = sin(PI * PLACE * f64::from(modes[from].ratio));
-            weights[from..from + choir.len()].fill(strength * shape * shape / struck as f64);
-            from += choir.len();
-        }
+        let weights = strengths(values.modes().as_slice(), frequency, PLACE);
         let [compliance, stillness] = bank.set_hammered(|m| weights[m]);
         self.hammer = Hammer::new(HammerLaw { compliance, stillness, ..self.law });
     }
@@ -88,4 +77,21 @@ impl Hammering {
     pub(super) fn frames_left(&self) -> u32 {
         if self.is_waiting { self.law.longest } else { self.hammer.frames_left() }
     }
+}
+
+/// The speed that an impulse of 1 gives the body at a `place`, a share of its length, by each mode, where a hammer has a mass of 1.
+/// `frequency` is the note's in Hz. For every body the place counts as on a string.
+pub(super) fn strengths(modes: &[Mode], frequency: f64, place: f64) -> [f64; MAX_CELLS * MAX_MODES] {
+    let mut weights = [0.0; MAX_CELLS * MAX_MODES];
+    let mut from = 0;
+    while from < modes.len() {
+        let last = modes[from].ratio * (1.0 + CHOIR);
+        let choir = &modes[from..];
+        let choir = &choir[..choir.iter().position(|mode| mode.ratio > last).unwrap_or(choir.len())];
+        let struck = choir.iter().filter(|mode| mode.strike > 0.0).count().max(1);
+        let shape = sin(PI * place * f64::from(modes[from].ratio));
+        weights[from..from + choir.len()].fill(4.0 * frequency * HEAVINESS * shape * shape / struck as f64);
+        from += choir.len();
+    }
+    weights
 }

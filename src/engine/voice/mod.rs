@@ -14,6 +14,7 @@ mod line;
 pub(super) mod mode_state;
 mod notes;
 mod pitch;
+mod rattling;
 mod separation;
 mod strike;
 mod tension;
@@ -175,6 +176,7 @@ impl SynthVoice {
             }
         }
         instrument.into_iter().for_each(|instrument| self.begin_hammer(instrument));
+        self.control_rattle(instrument);
         self.pitch.aim(&self.controls, &bends, &self.clock, frames);
         self.aim_gain(start, wheels, frames);
         self.control_driven(instrument, frames);
@@ -185,6 +187,18 @@ impl SynthVoice {
     fn begin_hammer(&mut self, instrument: &Instrument) {
         let values = StruckValues { instrument, modulators: &self.modulators, table: self.table };
         self.strike.hammering.begin(&values, self.pitch.frequency(), &mut self.bank);
+    }
+
+    /// Lets what rattles begin or end.
+    fn control_rattle(&mut self, instrument: Option<&Instrument>) {
+        let Self { strike, modulators, bank, sample_rate, pitch, table, energy, .. } = self;
+        if !strike.rattling.is_on() {
+            return;
+        }
+        let values = instrument.map(|instrument| StruckValues { instrument, modulators, table: *table });
+        let (share, note) = (energy.now() / strike.full_energy(), [pitch.frequency(), *sample_rate]);
+        let (full, is_touched) = (strike.full_force(), strike.hammering.is_on());
+        strike.rattling.control(values.as_ref(), [share, full], note, is_touched, bank);
     }
 
     /// Starts the ramps of bow, breath, noise and input, which end in `frames` frames.
@@ -211,7 +225,7 @@ impl SynthVoice {
         let Controls { bow_speed, input_gain, noise_gain, .. } = self.controls;
         let is_driven = [bow_speed, input_gain, noise_gain].iter().any(|gain| *gain > 0.0);
         let may_be = is_driven || self.strike.blowing.may_blow() || self.may_be_driven;
-        (self.is_held && may_be) || self.strike.is_played()
+        (self.is_held && may_be) || self.strike.is_played() || self.strike.rattling.is_on()
     }
 
     /// Starts a ramp to the gain `frames` frames from now. A fresh voice has no gain yet: it begins at the gains

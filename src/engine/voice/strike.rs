@@ -5,6 +5,7 @@ use super::bowing::Bowing;
 use super::hammering::{self, Hammering};
 use super::held_noise::HeldNoise;
 use super::input::Input;
+use super::rattling::Rattling;
 use super::values::{StruckValues, ratios};
 use super::variation::Variation;
 use crate::dsp::cells::Cells;
@@ -15,7 +16,7 @@ use crate::dsp::series::sines;
 use crate::engine::gain::exciter_gain;
 use crate::engine::note::Note;
 use crate::engine::voice_manager::Unison;
-use crate::params::{Choice, Coefficients, MalletPulse, NoiseDecay, Param};
+use crate::params::{Choice, Coefficients, MalletPulse, NoiseDecay, Param, Rattle};
 use crate::patch::ModeTable;
 use crate::sound::contact::{contact_time, hertz};
 use libm::{fabs, pow, sqrt};
@@ -48,6 +49,7 @@ pub(super) struct Strike {
     /// Stream of random numbers of the last strike.
     key: u64,
     pub(super) hammering: Hammering,
+    pub(super) rattling: Rattling,
     pub(super) bowing: Bowing,
     pub(super) blowing: Blowing,
     pub(super) input: Input,
@@ -69,6 +71,7 @@ impl Strike {
             variation: Variation::NONE,
             key: 0,
             hammering: Hammering::OFF,
+            rattling: Rattling::OFF,
             bowing: Bowing::OFF,
             blowing: Blowing::OFF,
             input: Input::OFF,
@@ -81,6 +84,7 @@ impl Strike {
         self.exciter = Exciter::REST;
         (self.forces, self.energy, self.phase) = ([0.0; 3], 0.0, 0.0);
         (self.hammering, self.bowing, self.blowing) = (Hammering::OFF, Bowing::OFF, Blowing::OFF);
+        self.rattling = Rattling::OFF;
         (self.input, self.held_noise) = (Input::OFF, HeldNoise::OFF);
     }
 
@@ -106,6 +110,11 @@ impl Strike {
         if self.full_energy > 0.0 { self.full_energy } else { 1.0 }
     }
 
+    /// The forces of a full strike together.
+    pub(super) fn full_force(&self) -> f64 {
+        self.full_forces.iter().sum()
+    }
+
     /// The stream of random numbers of the last strike.
     pub(super) fn key(&self) -> u64 {
         self.key
@@ -122,7 +131,8 @@ impl Strike {
     }
 
     /// The forces of the next frames, if there are any: those of strikes and of the incoming sound, and the player's. `input` is
-    /// the incoming sound: empty, or one sample for each frame. Breath takes the place of a bow, and both end the touch of a hammer.
+    /// the incoming sound: empty, or one sample for each frame. Breath takes the place of a bow, and both end the touch of a hammer, under which
+    /// nothing rattles.
     pub(super) fn forces(&mut self, frames: usize, input: &[f32]) -> (Option<&Drive>, Option<Player<'_>>) {
         let is_noisy = self.held_noise.is_on();
         let is_driven = self.exciter.is_active() || (self.input.is_on() && !input.is_empty()) || is_noisy;
@@ -137,9 +147,11 @@ impl Strike {
         let breath = self.blowing.blow(frames);
         if breath.is_some() || bow.is_some() {
             self.hammering = Hammering::OFF;
+            self.rattling.interrupt();
         }
         let hammer = Some(&mut self.hammering.hammer).filter(|hammer| hammer.is_there());
-        let player = breath.map(Player::Breath).or(bow.map(Player::Bow)).or(hammer.map(Player::Hammer));
+        let rattle = self.rattling.rattle().map(Player::Rattle);
+        let player = breath.map(Player::Breath).or(bow.map(Player::Bow)).or(hammer.map(Player::Hammer)).or(rattle);
         (is_driven.then_some(&self.drive), player)
     }
 
@@ -266,6 +278,8 @@ impl Strike {
         self.bowing.strike(values, force(Param::BowVelocity));
         self.blowing.strike(values, key, count);
         self.held_noise.strike(values, key, burst);
+        let kind = values.instrument.knobs.choice(Param::Rattle);
+        self.rattling.strike(if values.modes().has_phases() { Rattle::Off } else { kind });
         // The energy of earlier strikes has been counted already.
         self.energy = 0.0;
         let varied = self.variation.hardness;

@@ -25,9 +25,10 @@ use std::f64::consts::{LOG2_10, PI, SQRT_2};
 /// tick. Until the next tick, a sweep that rises to the end of its range can increase this 7.1 times, as it can for a
 /// strike.
 const CLASSIC: f64 = 8.0 * 7.1;
-/// Bound of what breath gives. The true one is in another norm, that of pressures (`dsp/mode_bank/played_tests`), and depends on
-/// the smallest level of a mode; here, breath must only stay finite.
-const BREATH: f64 = 1e12;
+/// Bound of what breath gives, and of what a rattle moves from mode to mode. The true ones are in other norms, those of pressures
+/// and of energies at the point of touch (`dsp/mode_bank/played_tests`, `hammer_tests`), and depend on the smallest level of a mode;
+/// here, they must only stay finite.
+pub(crate) const UNKNOWN: f64 = 1e12;
 /// Factor by which the soft pedal multiplies the force.
 const SOFT: f64 = 0.6;
 
@@ -73,7 +74,7 @@ struct Part {
     bow: f64,
     /// Bound of the sum of all frames of noise that is held.
     held: f64,
-    /// Whether breath may blow.
+    /// Whether breath may blow, or something rattle.
     blows: bool,
     /// The highest gain of mallet, pluck and noise, or 1 if they may all be off: the greatest force of a nudge.
     nudge: f64,
@@ -133,7 +134,7 @@ impl Part {
         part.unison = part.most(case, Param::Unison).max(1.0);
         part.bow = part.most_bow(case);
         part.held = part.most_held(case);
-        part.blows = part.most(case, Param::BreathLevel) > -60.0;
+        part.blows = part.most(case, Param::BreathLevel) > -60.0 || part.most(case, Param::Rattle) > 0.0;
         let levels = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel].map(|level| part.most(case, level));
         part.nudge = levels.into_iter().map(gain_from_db).fold(1.0, f64::max);
         part.bloom = part.most_bloom(case);
@@ -292,7 +293,7 @@ impl Part {
             force(Param::PluckVelocity) * self.level(Param::PluckLevel),
             force(Param::NoiseVelocity) * self.level(Param::NoiseLevel) * noise.most(is_exact),
         ];
-        let played = force(Param::BowVelocity) * self.bow + if self.blows { BREATH } else { 0.0 };
+        let played = force(Param::BowVelocity) * self.bow + if self.blows { UNKNOWN } else { 0.0 };
         let held = force(Param::NoiseVelocity) * self.held;
         Some(Strike { end, forces, played, held, nudge: 0.0, law, reach: self.reach() })
     }

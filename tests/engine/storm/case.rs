@@ -107,7 +107,8 @@ pub(crate) const PARAM_IDS: &str = "mallet_pulse mallet_hardness mallet_hardness
     noise_spacing mallet_velocity pluck_velocity noise_velocity mallet_mass mallet_speed mallet_key vary_position \
     vary_hardness vary_modes bow_level bow_force bow_position bow_slip bow_velocity input_level \
     tension bloom bloom_time touch touch_position noise_held breath_level breath_pressure breath_valve breath_opening \
-    breath_lip breath_noise breath_attack breath_tongue";
+    breath_lip breath_noise breath_attack breath_tongue rattle rattle_gap rattle_mass rattle_rate rattle_hardness \
+    rattle_position";
 
 /// Destinations of routes: the parameters that move pitch and damping and those of the modulation itself, but none on
 /// which the bound depends. New ones must be added at the end.

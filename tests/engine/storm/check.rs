@@ -1,6 +1,6 @@
 //! Plays a case and compares its output with the bound.
 
-use super::bound::{Step, bound};
+use super::bound::{Step, UNKNOWN, bound};
 use super::case::Case;
 use sprung::engine::{Ensemble, Event, Snapshot, Synth};
 
@@ -46,8 +46,8 @@ impl Player {
     }
 }
 
-/// Plays the case. Returns the largest share of its bound that a sample reached, or the first error.
-pub(crate) fn check(case: &Case) -> Result<f64, String> {
+/// Plays the case. Returns the largest share of its bound that a sample reached, if a bound is known, or the first error.
+pub(crate) fn check(case: &Case) -> Result<Option<f64>, String> {
     let steps = bound(case);
     let mut player = Player::new(case);
     let (mut left, mut right) = (vec![0.0; case.block], vec![0.0; case.block]);
@@ -87,7 +87,7 @@ pub(crate) fn check(case: &Case) -> Result<f64, String> {
             look(&mut player, step.checked_sub(1).map(|step| &steps[step]), start)?;
         }
     }
-    Ok(highest)
+    Ok(steps.last().is_none_or(|step| step.displacement < UNKNOWN).then_some(highest))
 }
 
 /// Checks that the visible state of the player at the end of a block is finite and within the bound of its strikes.

@@ -32,7 +32,7 @@ const SEED: u64 = 10;
 const SHOWN: usize = 5;
 
 /// The share of its bound that a case reaches, or the error. A panic counts as an error.
-fn try_bytes(bytes: &[u8]) -> Result<f64, String> {
+fn try_bytes(bytes: &[u8]) -> Result<Option<f64>, String> {
     let failure = |panic: Box<dyn std::any::Any + Send>| {
         let message = panic.downcast_ref::<String>().cloned();
         message.or_else(|| panic.downcast_ref().map(|text: &&str| (*text).to_owned())).unwrap_or_default()
@@ -82,7 +82,7 @@ fn storms(cases: u64) {
                         return;
                     }
                     match try_bytes(&chance::case(SEED, serial)) {
-                        Ok(share) => reached.lock().unwrap().push(share),
+                        Ok(share) => reached.lock().unwrap().extend(share),
                         Err(_) => failed.lock().unwrap().push(serial),
                     }
                 }

@@ -16,7 +16,7 @@ use sprung::preset::Guide;
 
 /// Pages with the sections on them, in the order in which sound is made. The last one has all other sections too.
 const PAGES: [(&str, &[&str]); 6] = [
-    ("Exciters", &["Mallet", "Pluck", "Noise", "Bow", "Breath", "Input", "Strike"]),
+    ("Exciters", &["Mallet", "Pluck", "Noise", "Bow", "Breath", "Rattle", "Input", "Strike"]),
     ("Body, Pitch", &["Body", "Pitch"]),
     ("Modulation", &["Macros", "LFO 1", "LFO 2", "LFO 3", "Envelope 1", "Envelope 2"]),
     ("Routes", &["Routes"]),

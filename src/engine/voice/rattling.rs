@@ -1,0 +1,115 @@
+//! The rattle of a voice: what the body hits as it swings.
+
+use super::hammering::strengths;
+use super::values::StruckValues;
+use crate::dsp::cells::Cells;
+use crate::dsp::exciter::{Rattle, RattleKind, RattleLaw};
+use crate::dsp::mode_bank::MAX_MODES;
+use crate::params::{Param, Rattle as Kind};
+use crate::sound::contact::contact_time;
+use libm::{sin, sqrt};
+use std::f64::consts::{PI, TAU};
+
+/// A mode that the strike does not move, such as those of wires and shell, hears the rattle without giving way to it: this share
+/// of the weight of others.
+const HEARD_ONLY: f64 = 0.01;
+
+/// A point that a full strike gives less speed than this does not move.
+const LEAST_SPEED: f64 = 1e-12;
+
+/// Below this share of a full strike's energy, nothing rattles any more: −80 dB.
+const STILL: f64 = 1e-8;
+
+/// The rattle of a voice. Real-time safe.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rattling {
+    kind: Kind,
+    rattle: Option<Rattle>,
+}
+
+impl Rattling {
+    /// Nothing rattles.
+    pub(super) const OFF: Self = Self { kind: Kind::Off, rattle: None };
+
+    /// Prepares what a strike makes rattle; it begins at the next [`Rattling::control`].
+    pub(super) fn strike(&mut self, kind: Kind) {
+        *self = Self { kind, rattle: None };
+    }
+
+    /// Whether anything rattles, or may begin to.
+    pub(super) fn is_on(&self) -> bool {
+        self.kind != Kind::Off
+    }
+
+    /// Lets the rattle begin if no hammer `is_touched`, and ends it when the body has nearly come to rest. `energy` is the body's, as
+    /// a share of that of a full strike; `full` the force of that strike, and `note` the note's frequency and the sample rate in Hz.
+    pub(super) fn control(
+        &mut self,
+        values: Option<&StruckValues>,
+        [energy, full]: [f64; 2],
+        note: [f64; 2],
+        is_touched: bool,
+        bank: &mut Cells,
+    ) {
+        if !self.is_on() || is_touched {
+            return;
+        }
+        if energy < STILL {
+            *self = Self::OFF;
+        } else if let (None, Some(values)) = (&self.rattle, values) {
+            self.rattle = self.begin(values, full, note, bank);
+            // A body that no strike moves hits nothing.
+            self.kind = if self.rattle.is_some() { self.kind } else { Kind::Off };
+        }
+    }
+
+    /// Prepares the modes, and finds the rattle's law; none if the body does not move under a strike.
+    fn begin(
+        &self,
+        values: &StruckValues,
+        full: f64,
+        [frequency, sample_rate]: [f64; 2],
+        bank: &mut Cells,
+    ) -> Option<Rattle> {
+        let modes = values.modes().as_slice();
+        let place = values.share(Param::RattlePosition);
+        let weights = strengths(modes, frequency, place);
+        let [levels, ..] = values.tilted_levels();
+        // A mode's level is that of an impulse at its antinode.
+        let touch = |m: usize| {
+            let struck = f64::from(modes[m].strike).max(HEARD_ONLY);
+            [levels[m] * sin(PI * place * f64::from(modes[m].ratio)), weights[m] * struck]
+        };
+        let compliance = bank.set_touched(touch);
+        // Speed and swing of the point after a full strike, from modes of any phases.
+        let (mut speeds, mut swings) = (0.0, 0.0);
+        for (m, mode) in modes.iter().enumerate().take(MAX_MODES) {
+            let speed = full * weights[m] * f64::from(mode.strike);
+            let swing = speed * sample_rate / (TAU * frequency * f64::from(mode.ratio));
+            (speeds, swings) = (speeds + speed * speed, swings + swing * swing);
+        }
+        let (speed, swing) = (sqrt(speeds), sqrt(swings));
+        if speed < LEAST_SPEED {
+            return None;
+        }
+        let kind = match self.kind {
+            Kind::Loose => RattleKind::Loose {
+                mass: values.get(Param::RattleMass),
+                pull: 2.0 * speed * values.get(Param::RattleRate) / sample_rate,
+            },
+            Kind::Off | Kind::Edge => RattleKind::Edge { gap: swing * values.share(Param::RattleGap) },
+        };
+        let contact = contact_time(values.share(Param::RattleHardness)) * sample_rate;
+        Some(Rattle::new(RattleLaw { kind, speed, contact, compliance }))
+    }
+
+    /// What rattles in the next frames.
+    pub(super) fn rattle(&mut self) -> Option<&mut Rattle> {
+        self.rattle.as_mut()
+    }
+
+    /// A hammer has taken the modes' contacts, or a player: the rattle begins again after it.
+    pub(super) fn interrupt(&mut self) {
+        self.rattle = None;
+    }
+}
