@@ -2,8 +2,9 @@
 
 #![allow(unsafe_code, missing_docs, reason = "the wrapper's macros define exported symbols")]
 
+use crate::multi::SprungMulti;
 use crate::plugin::Sprung;
 use nice_plug::prelude::*;
 
-nice_export_clap!(Sprung);
-nice_export_vst3!(Sprung);
+nice_export_clap!(Sprung, SprungMulti);
+nice_export_vst3!(Sprung, SprungMulti);

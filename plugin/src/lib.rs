@@ -3,6 +3,7 @@
 //! | module | holds |
 //! |---|---|
 //! | `plugin` | the description that hosts read, and the calls that they make |
+//! | `multi` | the same with outputs for pads and channels |
 //! | `params` | the host's parameters, made from [`sprung::params::PARAMS`] |
 //! | `loaded` | the loaded sound with exact values, and how the audio thread gets it without waiting |
 //! | `live` | the audio thread: follows parameters, passes events on, renders |
@@ -26,6 +27,7 @@ mod link;
 mod live;
 mod loaded;
 mod lock;
+mod multi;
 mod params;
 mod plugin;
 #[cfg(feature = "standalone")]
@@ -33,4 +35,5 @@ pub mod standalone;
 mod state;
 mod tail;
 
+pub use multi::SprungMulti;
 pub use plugin::Sprung;

@@ -9,6 +9,7 @@ use nice_plug::prelude::*;
 use nice_plug_core::midi::{Channel, Key, VoiceID};
 use nice_plug_egui::RepaintNotifier;
 use rtrb::Consumer;
+use sprung::engine::synth::Outputs;
 use sprung::engine::{Event, EventKind, Snapshot, Synth, TelemetryWriter};
 use sprung::params::{PARAM_COUNT, PARAMS, Param};
 use sprung::sound::kit::KEYS;
@@ -156,13 +157,14 @@ impl Live {
         }
     }
 
-    /// Renders a block and overwrites `outputs`, one channel or two. `input` is the incoming sound: empty, or one
-    /// sample per frame.
+    /// Renders a block and overwrites `outputs`, one channel or two, and the `others` beside them if there are any. `input` is
+    /// the incoming sound: empty, or one sample per frame.
     pub(crate) fn process<P: Plugin<SysExMessage = ()>>(
         &mut self,
         params: &SprungParams,
         input: &[f32],
         outputs: &mut [&mut [f32]],
+        others: &mut Option<Outputs<'_>>,
         context: &mut impl ProcessContext<P>,
     ) -> ProcessStatus {
         // Reading the clock takes no lock, and no system call on the supported systems.
@@ -194,11 +196,11 @@ impl Live {
                 continue;
             }
             let at = at.min(frames);
-            self.render(input, outputs, frame..at, context);
+            self.render(input, outputs, others, frame..at, context);
             frame = at;
             self.take(&event, frame, context);
         }
-        self.render(input, outputs, frame..frames, context);
+        self.render(input, outputs, others, frame..frames, context);
         if !self.synth.is_silent() {
             self.repaint.request_repaint();
         }
@@ -253,6 +255,7 @@ impl Live {
         &mut self,
         input: &[f32],
         outputs: &mut [&mut [f32]],
+        others: &mut Option<Outputs<'_>>,
         frames: Range<usize>,
         context: &mut impl ProcessContext<P>,
     ) {
@@ -263,8 +266,13 @@ impl Live {
         let input = &input[frames.start.min(input.len())..frames.end.min(input.len())];
         match outputs {
             [left, right, ..] => {
-                let (left, right) = (&mut left[frames.clone()], &mut right[frames]);
-                self.synth.process_with_input(&[], input, left, right);
+                let (left, right) = (&mut left[frames.clone()], &mut right[frames.clone()]);
+                match others {
+                    None => self.synth.process_with_input(&[], input, left, right),
+                    Some(others) => {
+                        self.synth.process_with_outputs(&[], input, left, right, &mut others.cut(frames));
+                    }
+                }
                 note_sound(&mut self.telemetry, &self.synth, left, right);
                 self.reported = 0;
                 self.report_ended(last, context);

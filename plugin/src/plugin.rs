@@ -17,13 +17,17 @@ use std::sync::Arc;
 /// The instrument as the wrapper uses it.
 #[derive(Default)]
 pub struct Sprung {
-    params: Arc<SprungParams>,
+    pub(crate) params: Arc<SprungParams>,
     /// Exists while the plugin is active.
-    live: Option<Live>,
+    pub(crate) live: Option<Live>,
 }
 
 /// A layout with this many output channels, with or without an input.
-const fn layout(name: &'static str, channels: u32, inputs: &'static [std::num::NonZeroU32]) -> AudioIOLayout {
+pub(crate) const fn layout(
+    name: &'static str,
+    channels: u32,
+    inputs: &'static [std::num::NonZeroU32],
+) -> AudioIOLayout {
     AudioIOLayout {
         main_input_channels: None,
         main_output_channels: Some(new_nonzero_u32(channels)),
@@ -46,7 +50,7 @@ const FIRST: [Param; 8] = [
     Param::Gain,
 ];
 
-const STEREO_IN: &[std::num::NonZeroU32] = &[new_nonzero_u32(2)];
+pub(crate) const STEREO_IN: &[std::num::NonZeroU32] = &[new_nonzero_u32(2)];
 
 impl Plugin for Sprung {
     const NAME: &'static str = "Sprung";
@@ -81,14 +85,8 @@ impl Plugin for Sprung {
         state::filter(state);
     }
 
-    fn activate(
-        &mut self,
-        _layout: &AudioIOLayout,
-        config: &BufferConfig,
-        _context: &mut impl ActivateContext<Self>,
-    ) -> bool {
-        let offline = config.process_mode == ProcessMode::Offline;
-        self.live = Some(Live::new(f64::from(config.sample_rate), offline, &self.params));
+    fn activate(&mut self, _: &AudioIOLayout, config: &BufferConfig, _: &mut impl ActivateContext<Self>) -> bool {
+        self.start(config);
         true
     }
 
@@ -105,7 +103,7 @@ impl Plugin for Sprung {
         context: &mut impl ProcessContext<Self>,
     ) -> ProcessStatus {
         match &mut self.live {
-            Some(live) => live.process(&self.params, mono_input(aux), buffer.as_slice(), context),
+            Some(live) => live.process(&self.params, mono_input(aux.inputs), buffer.as_slice(), &mut None, context),
             None => ProcessStatus::Error("processing before activation"),
         }
     }
@@ -117,8 +115,8 @@ impl Plugin for Sprung {
 
 /// The signal at *Exciter in*, the mean of its channels; empty if the host has no such port. The wrapper's buffers are
 /// copies, so the mean is written to the first channel.
-fn mono_input<'a>(aux: &'a mut AuxiliaryBuffers) -> &'a [f32] {
-    match aux.inputs.first_mut().map(|input| input.as_slice()) {
+pub(crate) fn mono_input<'a>(inputs: &'a mut [Buffer<'_>]) -> &'a [f32] {
+    match inputs.first_mut().map(|input| input.as_slice()) {
         Some([left, right, ..]) => {
             for (left, right) in left.iter_mut().zip(right.iter()) {
                 *left = mono_from_stereo(*left, *right);
@@ -141,6 +139,19 @@ impl ClapPlugin for Sprung {
         Some(PolyModulationConfig { max_voice_capacity: MAX_VOICES, supports_overlapping_voices: true });
 
     fn remote_controls(&self, context: &mut impl RemoteControlsContext) {
+        self.pages(context);
+    }
+}
+
+impl Sprung {
+    /// Makes what plays.
+    pub(crate) fn start(&mut self, config: &BufferConfig) {
+        let offline = config.process_mode == ProcessMode::Offline;
+        self.live = Some(Live::new(f64::from(config.sample_rate), offline, &self.params));
+    }
+
+    /// The pages of a hardware controller.
+    pub(crate) fn pages(&self, context: &mut impl RemoteControlsContext) {
         let mut add = |name: &str, params: &mut dyn Iterator<Item = Param>| {
             context.add_section(name, |section| {
                 section.add_page(name, |page| {
@@ -173,6 +184,7 @@ impl Vst3Plugin for Sprung {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::multi::SprungMulti;
     use serde_json::{Value, json};
 
     /// VST3 hosts may read this file instead of loading the library.
@@ -186,24 +198,28 @@ mod tests {
             "Flags": { "Unicode": true, "Classes Discardable": false, "Component Non Discardable": false },
         });
         let categories: Vec<&str> = Sprung::VST3_SUBCATEGORIES.iter().map(|category| category.as_str()).collect();
-        let class = json!({
-            "CID": Sprung::VST3_CLASS_ID.map(|byte| format!("{byte:02X}")).concat(),
-            "Category": "Audio Module Class",
-            "Name": Sprung::NAME,
-            "Vendor": Sprung::VENDOR,
-            "Version": Sprung::VERSION,
-            "SDKVersion": "VST 3.6.14",
-            "Sub Categories": categories,
-            "Class Flags": 2,
-            "Cardinality": i32::MAX,
-            "Snapshots": [],
-        });
+        let class = |name, id: [u8; 16]| {
+            json!({
+                "CID": id.map(|byte| format!("{byte:02X}")).concat(),
+                "Category": "Audio Module Class",
+                "Name": name,
+                "Vendor": Sprung::VENDOR,
+                "Version": Sprung::VERSION,
+                "SDKVersion": "VST 3.6.14",
+                "Sub Categories": categories,
+                "Class Flags": 2,
+                "Cardinality": i32::MAX,
+                "Snapshots": [],
+            })
+        };
+        let classes =
+            [class(Sprung::NAME, Sprung::VST3_CLASS_ID), class(SprungMulti::NAME, SprungMulti::VST3_CLASS_ID)];
         let expected = json!({
             "Name": Sprung::NAME,
             "Version": Sprung::VERSION,
             "Factory Info": factory,
             "Compatibility": [],
-            "Classes": [class],
+            "Classes": classes,
         });
         assert_eq!(info, expected);
     }

@@ -48,6 +48,8 @@ pub struct Note {
     pub body: u32,
     /// Choke group, 0 for none.
     pub choke: u8,
+    /// The output beside the main one that it goes to where there are several; 0 for the main one.
+    pub output: u8,
     /// Amplitude ratio of the pad.
     pub gain: f32,
     /// Pan of the pad, −1 (left) to 1 (right).
@@ -75,6 +77,7 @@ impl Note {
         patch: 0,
         body: 0,
         choke: 0,
+        output: 0,
         gain: 1.0,
         pan: 0.0,
         is_legato: false,

@@ -9,12 +9,13 @@ use super::{MAX_FILE_SIZE, Preset};
 use crate::error::Error;
 use crate::params::Param;
 use crate::sound::Pad;
+use crate::sound::kit::OUTPUTS;
 use crate::units::{key_from_note_name, note_name, parse_key};
 use std::fmt::Write;
 use toml::{Table, Value};
 
 const KEYS: [&str; 8] = ["kit", "name", "author", "tags", "comment", "voices", "params", "keys"];
-const PAD_KEYS: [&str; 7] = ["key", "name", "sound", "pitch", "gain", "pan", "choke"];
+const PAD_KEYS: [&str; 8] = ["key", "name", "sound", "pitch", "gain", "pan", "choke", "output"];
 
 /// Finds the preset with the name that a kit uses.
 type Find<'a> = &'a mut dyn FnMut(&str) -> crate::Result<Preset>;
@@ -98,9 +99,20 @@ fn read_pad(place: &str, table: &Table, kit: &mut KitPreset, find: Find, complai
         gain_db: number(table, "gain", Param::Gain, &dotted, complaints).unwrap_or(0.0),
         pan: complaints.take(&format!("{dotted}pan: "), read_pan(table.get("pan"))).unwrap_or(0.0),
         choke: number(table, "choke", Param::Choke, &dotted, complaints).map(|choke| choke as u8),
+        output: complaints.take(&format!("{dotted}output: "), read_output(table.get("output"))).unwrap_or(0),
     };
     if let (Some(key), Some(_)) = (key, sound) {
         kit.pads.push((key, pad));
+    }
+}
+
+/// Reads the output of a pad, 0 for the main one.
+fn read_output(value: Option<&Value>) -> Result<u8, String> {
+    match value {
+        None => Ok(0),
+        Some(Value::String(name)) if name == "main" => Ok(0),
+        Some(Value::Integer(number)) if (1..=OUTPUTS as i64).contains(number) => Ok(*number as u8),
+        Some(other) => Err(format!("{other} is none: expected \"main\" or a whole number from 1 to {OUTPUTS}")),
     }
 }
 
@@ -189,6 +201,9 @@ pub(super) fn to_toml(kit: &KitPreset) -> String {
         if let Some(choke) = pad.choke {
             let _ = writeln!(out, "choke = {choke}");
         }
+        if pad.output != 0 {
+            let _ = writeln!(out, "output = {}", pad.output);
+        }
     }
     out
 }
@@ -204,9 +219,9 @@ mod tests {
     #[test]
     fn a_kit_is_read_in_every_notation_and_written_back() {
         let text = "kit = 1\nname = \"k\"\nauthor = \"a\"\ntags = [\"t\"]\ncomment = \"c\\n\"\nvoices = 7\n\
-                    keys = [{ key = \"C2\", sound = \"Kick\" }, { key = 38, sound = \"snare\", pitch = \"60.5\", gain = \"-3 dB\" },\
+                    keys = [{ key = \"C2\", sound = \"Kick\" }, { key = 38, output = \"main\", sound = \"snare\", pitch = \"60.5\", gain = \"-3 dB\" },\
                     { key = \"39\", sound = \"Kick\", pitch = \"F#3\", pan = -0.3, choke = 0, name = \"K\" },\
-                    { key = \"G9\", sound = \"Clap\", pitch = 41, gain = 2, choke = 16 }]";
+                    { key = \"G9\", sound = \"Clap\", pitch = 41, gain = 2, choke = 16, output = 16 }]";
         let Ok(Playable::Kit(kit)) = parse(text) else { panic!("{:?}", parse(text)) };
         let pad = |sound| Pad::of(sound);
         assert_eq!(
@@ -215,7 +230,7 @@ mod tests {
                 (36, pad(0)),
                 (38, Pad { pitch: Some(60.5), gain_db: -3.0, ..pad(1) }),
                 (39, Pad { name: "K".to_owned(), pitch: Some(54.0), pan: -0.3, choke: Some(0), ..pad(0) }),
-                (127, Pad { pitch: Some(41.0), gain_db: 2.0, choke: Some(16), ..pad(2) }),
+                (127, Pad { pitch: Some(41.0), gain_db: 2.0, choke: Some(16), output: 16, ..pad(2) }),
             ]
         );
         assert_eq!((kit.voices, kit.sounds.len()), (7, 3));
@@ -260,6 +275,8 @@ mod tests {
             (pad("pan = 2"), "x: keys[0].pan: 2 is out of range: expected -1 to 1"),
             (pad("pan = nan"), "x: keys[0].pan: NaN is out of range"),
             (pad("pan = \"left\""), "x: keys[0].pan: expected a number from -1 to 1, found string"),
+            (pad("output = 17"), "x: keys[0].output: 17 is none: expected \"main\" or a whole number from 1 to 16"),
+            (pad("output = 0"), "x: keys[0].output: 0 is none: expected \"main\""),
             (pad("choke = 17"), "x: keys[0].choke: 17 is out of range: expected a whole number from 0 to 16"),
             (pad("name = 1"), "x: keys[0].name: expected a text, found integer ‘1’"),
             (pad("name = \" a\""), "x: keys[0].name: expected one line of at most 100 characters"),

@@ -19,6 +19,9 @@ pub(crate) const PITCHES: RangeInclusive<f64> = -60.0..=200.0;
 /// Number of the last choke group.
 pub(crate) const CHOKE_GROUPS: u8 = 16;
 
+/// Number of stereo outputs beside the main one.
+pub const OUTPUTS: usize = 16;
+
 /// The pad of a key: the sound that the key plays, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pad {
@@ -34,12 +37,14 @@ pub struct Pad {
     pub pan: f32,
     /// Choke group: notes of one group silence each other; 0 is no group. None for the group of the sound.
     pub choke: Option<u8>,
+    /// The stereo output that it goes to where there are several: 1 to [`OUTPUTS`], or 0 for the main one.
+    pub output: u8,
 }
 
 impl Pad {
     /// A pad that plays a sound at the pitch of each key, without changes to its gain, pan and choke group.
     pub const fn of(sound: usize) -> Self {
-        Self { name: String::new(), sound, pitch: None, gain_db: 0.0, pan: 0.0, choke: None }
+        Self { name: String::new(), sound, pitch: None, gain_db: 0.0, pan: 0.0, choke: None, output: 0 }
     }
 
     /// The key whose pitch the pad has when `key` plays it, and semitones above.
@@ -61,6 +66,7 @@ impl Pad {
         self.pitch =
             self.pitch.filter(|pitch| !pitch.is_nan()).map(|pitch| pitch.clamp(*PITCHES.start(), *PITCHES.end()));
         self.choke = self.choke.map(|choke| choke.min(CHOKE_GROUPS));
+        self.output = if usize::from(self.output) > OUTPUTS { 0 } else { self.output };
     }
 }
 

@@ -24,6 +24,7 @@ mod limiter;
 mod modulation;
 mod motion;
 mod nudges;
+mod outputs;
 mod pair_reference;
 mod pool;
 mod seed_listing;

@@ -80,7 +80,7 @@ fn stereo(live: &mut Live, params: &SprungParams, host: &mut Host, frames: usize
     // The shell must overwrite old contents of the host's buffers.
     let mut out = [vec![9.0; frames], vec![9.0; frames]];
     let [left, right] = &mut out;
-    let status = live.process(params, &[], &mut [left, right], host);
+    let status = live.process(params, &[], &mut [left, right], &mut None, host);
     (out, status)
 }
 
@@ -115,7 +115,7 @@ fn the_shell_has_the_bits_of_the_engine() {
     live.reset(&params);
     let mut mono = vec![9.0; FRAMES];
     let mut host = Host::new(&[on(100, 1, 60), on(100, 2, 67), off(2_000, 1)]);
-    live.process(&params, &[], &mut [&mut mono], &mut host);
+    live.process(&params, &[], &mut [&mut mono], &mut None, &mut host);
     let mean: Vec<f32> = expected[0].iter().zip(&expected[1]).map(|(left, right)| 0.5 * (left + right)).collect();
     assert_eq!(mono, mean, "mono is the mean, after a reset as from the start");
 }
@@ -136,11 +136,11 @@ fn what_comes_in_drives_what_is_held() {
     let mut live = Live::new(RATE, false, &params);
     let mut out = [vec![9.0; FRAMES], vec![9.0; FRAMES]];
     let [to_left, to_right] = &mut out;
-    live.process(&params, &input, &mut [to_left, to_right], &mut Host::new(&[on(100, 1, 60)]));
+    live.process(&params, &input, &mut [to_left, to_right], &mut None, &mut Host::new(&[on(100, 1, 60)]));
     assert_eq!(out, [left, right]);
     live.reset(&params);
     let mut mono = vec![9.0; FRAMES];
-    live.process(&params, &input, &mut [&mut mono], &mut Host::new(&[on(100, 1, 60)]));
+    live.process(&params, &input, &mut [&mut mono], &mut None, &mut Host::new(&[on(100, 1, 60)]));
     assert_eq!(mono, mean);
 }
 

@@ -24,6 +24,7 @@ mod host_menu;
 mod lifecycle;
 #[cfg(target_os = "linux")]
 mod minutes;
+mod multi;
 mod notes;
 mod parameters;
 mod patches;
@@ -168,6 +169,12 @@ fn main() -> ExitCode {
             a_choke_silences_within_a_fade
             stray_events_do_no_harm
             a_flood_of_events_loses_none
+        }
+        Nothing: multi {
+            sixteen_stereo_outputs_follow_the_main_one
+            pads_go_to_their_outputs_which_add_up_to_the_plain_plugin
+            channels_go_to_the_outputs_of_their_numbers
+            states_move_between_both
         }
         Nothing: automation {
             a_parameter_changes_at_its_frame

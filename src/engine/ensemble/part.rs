@@ -63,7 +63,7 @@ impl Part {
                 continue;
             }
             let at = chunk.frame(event).max(frame);
-            synth.play(part_of(chunk.input, frame, at), &mut left[frame..at], &mut right[frame..at]);
+            synth.play(part_of(chunk.input, frame, at), &mut left[frame..at], &mut right[frame..at], None);
             frame = at;
             match program {
                 Some(kit) => synth.set_kit(kit),
@@ -73,7 +73,7 @@ impl Part {
         }
         if *is_heard {
             let input = part_of(chunk.input, frame, chunk.frames);
-            synth.play(input, &mut left[frame..], &mut right[frame..]);
+            synth.play(input, &mut left[frame..], &mut right[frame..], None);
         } else {
             synth.rest(chunk.frames - frame);
         }

@@ -151,6 +151,11 @@ impl Space {
             self.is_on && !(idle && tremolo.is_idle() && drive.is_idle() && tone.is_idle() && width.is_idle());
     }
 
+    /// Whether any section changes or may change the signal.
+    pub(crate) fn is_on(&self) -> bool {
+        self.is_on
+    }
+
     /// Whether any section still sounds or is still moving to another setting.
     pub(crate) fn is_awake(&self) -> bool {
         self.is_awake

@@ -31,6 +31,11 @@ impl Channels {
         self.zones.master_of(channel).map(|master| self.of(master))
     }
 
+    /// Whether a channel is a member of an MPE zone.
+    pub(super) fn is_member(&self, channel: u8) -> bool {
+        self.zones.master_of(channel).is_some()
+    }
+
     /// The controllers that a note on a channel follows: those of the channel, and those of its zone's master.
     pub(super) fn wheels(&self, channel: u8) -> Wheels<'_> {
         Wheels { channel: self.of(channel), master: self.master_of(channel) }

@@ -86,6 +86,7 @@ impl Synth {
 
     /// Starts a note. The pad, the sound and the soft pedal complete it first.
     fn note_on(&mut self, mut note: Note) {
+        note.output = self.output(&note);
         let Some(instrument) = self.instruments.start(&mut note, self.clock) else {
             if !self.leaves_out_notes {
                 self.manager.turn_away(note);

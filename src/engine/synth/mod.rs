@@ -4,6 +4,7 @@ mod channels;
 mod controllers;
 mod events;
 mod instruments;
+mod outputs;
 mod pads;
 mod process;
 
@@ -20,6 +21,7 @@ use crate::patch::Patch;
 use crate::sound::{Kit, Tuning};
 use channels::Channels;
 use instruments::{DEFAULT_BEAT_RATE, Instruments};
+pub use outputs::Outputs;
 pub(crate) use pads::PadGroup;
 use pads::PadSums;
 use std::sync::Arc;
@@ -264,6 +266,16 @@ impl Synth {
     /// random numbers, and glide from the pitch before.
     pub(super) fn leave_out_notes(&mut self, leaves_out: bool) {
         self.leaves_out_notes = leaves_out;
+    }
+
+    /// The output of a note: its pad's, or in a kit of one sound, that of its channel. Channel 1 and the members of MPE zones,
+    /// which play one part together, are on the main output, 0.
+    fn output(&self, note: &Note) -> u8 {
+        let kit = self.kit();
+        match kit.pad(note.key).map_or(0, |pad| pad.output) {
+            0 if kit.is_single() && note.channel > 0 && !self.channels.is_member(note.channel) => note.channel + 1,
+            own => own,
+        }
     }
 
     /// The most that a note of any sound of the kit takes from the pool.

@@ -4,7 +4,7 @@
 //! voice waits for the latency of its own exponential and sine. Replacing those of `libm` by series of our own was no
 //! faster, and vibrato even lost a tenth. (Measured once.)
 
-use super::Synth;
+use super::{Outputs, Synth};
 use crate::dsp::CONTROL_FRAMES;
 use crate::engine::event::Event;
 use crate::params::{self, Param};
@@ -20,21 +20,53 @@ impl Synth {
     /// As [`Synth::process`], with incoming sound: it drives the modes of notes whose keys are held, at the input level of
     /// their sounds ([`Param::InputLevel`]). `input` has a sample for each frame; missing samples count as silence.
     pub fn process_with_input(&mut self, events: &[Event], input: &[f32], left: &mut [f32], right: &mut [f32]) {
+        self.process_split(events, input, left, right, None);
+    }
+
+    /// As [`Synth::process_with_input`], with notes on outputs of their own: a pad's on that of the pad, and in a kit of one sound those of
+    /// MIDI channels 2 to 16 on the output of that number. All the rest is on the main one: also what the effects after the voices make
+    /// of the sum, less what the other outputs carry, so that the outputs always add up to the one of [`Synth::process`], to within
+    /// rounding, as long as the limiter passes it; it works on the main output alone. All outputs are overwritten.
+    pub fn process_with_outputs(
+        &mut self,
+        events: &[Event],
+        input: &[f32],
+        left: &mut [f32],
+        right: &mut [f32],
+        outputs: &mut Outputs<'_>,
+    ) {
+        outputs.silence();
+        self.process_split(events, input, left, right, Some(outputs));
+    }
+
+    fn process_split(
+        &mut self,
+        events: &[Event],
+        input: &[f32],
+        left: &mut [f32],
+        right: &mut [f32],
+        mut outputs: Option<&mut Outputs<'_>>,
+    ) {
         let frames = left.len().min(right.len());
         let (left, right) = (&mut left[..frames], &mut right[..frames]);
         self.manager.clear_ended();
         let mut frame = 0;
         for event in events {
             let at = (event.frame as usize).min(frames.saturating_sub(1)).max(frame);
-            self.play_limited(part(input, frame, at), &mut left[frame..at], &mut right[frame..at]);
+            let outputs = outputs.as_deref_mut().map(|outputs| outputs.cut(frame..at));
+            self.play_limited(part(input, frame, at), &mut left[frame..at], &mut right[frame..at], outputs);
             self.handle(event);
             frame = at;
         }
-        self.play_limited(part(input, frame, frames), &mut left[frame..], &mut right[frame..]);
+        let outputs = outputs.map(|outputs| outputs.cut(frame..frames));
+        self.play_limited(part(input, frame, frames), &mut left[frame..], &mut right[frame..], outputs);
     }
 
-    fn play_limited(&mut self, input: &[f32], left: &mut [f32], right: &mut [f32]) {
-        let is_heard = self.play(input, left, right);
+    fn play_limited(&mut self, input: &[f32], left: &mut [f32], right: &mut [f32], mut outputs: Option<Outputs<'_>>) {
+        let is_heard = self.play(input, left, right, outputs.as_mut());
+        if let Some(outputs) = &mut outputs {
+            outputs.each_used(silence_inaudible);
+        }
         if is_heard || !self.limiter.is_idle() {
             let limiter = self.values().choice::<params::Limiter>(Param::Limiter);
             self.limiter.process(limiter == params::Limiter::On, left, right);
@@ -43,8 +75,14 @@ impl Synth {
     }
 
     /// Renders frames without events and without the limiter, and overwrites the slices. Returns whether they may
-    /// contain sound. `input` is the incoming sound.
-    pub(in crate::engine) fn play(&mut self, input: &[f32], left: &mut [f32], right: &mut [f32]) -> bool {
+    /// contain sound. `input` is the incoming sound; `outputs`, if any, are silent.
+    pub(in crate::engine) fn play(
+        &mut self,
+        input: &[f32],
+        left: &mut [f32],
+        right: &mut [f32],
+        mut outputs: Option<&mut Outputs<'_>>,
+    ) -> bool {
         left.fill(0.0);
         right.fill(0.0);
         if self.is_silent() {
@@ -52,9 +90,17 @@ impl Synth {
             self.rest(left.len());
             return false;
         }
-        self.render(input, left, right);
+        self.render(input, left, right, outputs.as_deref_mut());
+        // The effects hear all notes.
+        let mut elsewhere = outputs.filter(|_| self.space.is_on());
+        if let Some(outputs) = &mut elsewhere {
+            outputs.add_to([left, right], 1.0);
+        }
         flush(left, right);
         if self.space.process(left, right) {
+            if let Some(outputs) = &mut elsewhere {
+                outputs.add_to([left, right], -1.0);
+            }
             flush(left, right);
         }
         true
@@ -66,8 +112,8 @@ impl Synth {
         self.space.skip(frames);
     }
 
-    /// Renders frames without events, and adds them to both slices.
-    fn render(&mut self, input: &[f32], left: &mut [f32], right: &mut [f32]) {
+    /// Renders frames without events, and adds each voice to both slices, or to its output if that is there.
+    fn render(&mut self, input: &[f32], left: &mut [f32], right: &mut [f32], mut outputs: Option<&mut Outputs<'_>>) {
         let (frames, mut frame) = (left.len(), 0);
         while frame < frames {
             if self.manager.is_silent() {
@@ -86,6 +132,8 @@ impl Synth {
             let end = frames.min(frame + to_tick);
             for (note, voice) in self.manager.active() {
                 let (input, left, right) = (part(input, frame, end), &mut left[frame..end], &mut right[frame..end]);
+                let own = outputs.as_deref_mut().and_then(|outputs| outputs.of(note.output, frame..end));
+                let [left, right] = own.unwrap_or([left, right]);
                 match &mut self.pads {
                     None => voice.render(input, left, right),
                     Some(pads) => pads.render(note, voice, input, [left, right]),

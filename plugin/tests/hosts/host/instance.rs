@@ -39,10 +39,19 @@ impl Instance {
         Self::of(&open(), true)
     }
 
+    /// A new instance of Sprung Multi, the second plugin of the library.
+    pub(crate) fn multi() -> Self {
+        Self::at(&open(), true, 1)
+    }
+
     /// A new instance from a library that is already open.
     pub(crate) fn of(entry: &PluginEntry, tells_threads: bool) -> Self {
+        Self::at(entry, tells_threads, 0)
+    }
+
+    fn at(entry: &PluginEntry, tells_threads: bool, index: u32) -> Self {
         let factory = entry.get_factory::<PluginFactory>().expect("the file has plugins");
-        let id: &CStr = factory.plugin_descriptor(0).and_then(|descriptor| descriptor.id()).expect("it has one");
+        let id: &CStr = factory.plugin_descriptor(index).and_then(|descriptor| descriptor.id()).expect("it has one");
         let info = HostInfo::new("Sprung's tests", "Sprung", "", env!("CARGO_PKG_VERSION")).unwrap();
         let clack = PluginInstance::<Host>::new(
             |_| Calls::new(tells_threads),

@@ -33,6 +33,8 @@ pub(crate) struct Audio {
     outputs: Vec<Vec<f32>>,
     input_ports: AudioPorts,
     output_ports: AudioPorts,
+    /// Channels of each output port.
+    width: usize,
     /// Samples for all input channels from the first frame on, followed by silence. If empty, the input buffers stay as they are.
     incoming: Vec<f32>,
     /// Whether the input is passed in the memory of the output.
@@ -111,23 +113,27 @@ impl Player {
 
 impl Audio {
     fn new(instance: &mut Instance, sample_rate: f64, max_block: u32) -> Self {
-        let channels = |instance: &mut Instance, is_input: bool| -> u32 {
+        let channels = |instance: &mut Instance, is_input: bool| -> Vec<u32> {
             let handle = instance.clack.plugin_handle();
             let ports: PluginAudioPorts = handle.get_extension().expect("there are audio ports");
             let mut buffer = AudioPortInfoBuffer::new();
-            assert!(ports.count(&handle, is_input) <= 1, "one port a direction");
             (0..ports.count(&handle, is_input))
                 .map(|index| ports.get(&handle, index, is_input, &mut buffer).expect("a known port").channel_count)
-                .sum()
+                .collect()
         };
-        let [inputs, outputs] =
-            [true, false].map(|is_input| vec![vec![0.0; max_block as usize]; channels(instance, is_input) as usize]);
+        let (input_widths, output_widths) = (channels(instance, true), channels(instance, false));
+        assert!(input_widths.len() <= 1, "one port comes in");
+        let width = output_widths[0] as usize;
+        assert!(output_widths.iter().all(|other| *other as usize == width), "all outputs are alike");
+        let [inputs, outputs] = [&input_widths, &output_widths]
+            .map(|widths| vec![vec![0.0; max_block as usize]; widths.iter().sum::<u32>() as usize]);
         let configuration = PluginAudioConfiguration { sample_rate, min_frames_count: 1, max_frames_count: max_block };
         let stopped = instance.clack.activate(|_, _| (), configuration).expect("the plugin can be activated");
         Self {
             processor: stopped.start_processing().expect("processing can start"),
             input_ports: AudioPorts::with_capacity(inputs.len(), 1),
-            output_ports: AudioPorts::with_capacity(outputs.len(), 1),
+            output_ports: AudioPorts::with_capacity(outputs.len(), output_widths.len()),
+            width,
             inputs,
             outputs,
             incoming: Vec::new(),
@@ -181,13 +187,11 @@ impl Audio {
                 channel[now..frames].fill(0.0);
             }
         }
-        let mut outputs = self.output_ports.with_output_buffers([AudioPortBuffer {
-            latency: 0,
-            channels: AudioPortBufferType::f32_output_only(
-                self.outputs.iter_mut().map(|channel| &mut channel[..frames]),
-            ),
-        }]);
-        let same_memory = [outputs.as_raw_buffers()[0]];
+        let mut outputs = self.output_ports.with_output_buffers(self.outputs.chunks_mut(self.width).map(move |port| {
+            let channels = port.iter_mut().map(move |channel| &mut channel[..frames]);
+            AudioPortBuffer { latency: 0, channels: AudioPortBufferType::f32_output_only(channels) }
+        }));
+        let (width, same_memory) = (self.width, [outputs.as_raw_buffers()[0]]);
         let inputs = if self.inputs.is_empty() {
             InputAudioBuffers::empty()
         } else if self.in_place {
@@ -209,7 +213,11 @@ impl Audio {
             Some(self.clock),
             None,
         );
-        let constant = outputs.as_raw_buffers()[0].constant_mask;
+        let constant = outputs
+            .as_raw_buffers()
+            .iter()
+            .zip((0..).step_by(width))
+            .fold(0, |all, (port, first)| all | port.constant_mask << first);
         for (index, channel) in self.outputs.iter().enumerate() {
             let is_constant = channel[..frames].iter().all(|sample| sample.to_bits() == channel[0].to_bits());
             assert!(constant >> index & 1 == 0 || is_constant, "channel {index} is said to be constant, but is not");

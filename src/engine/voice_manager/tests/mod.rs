@@ -54,6 +54,7 @@ fn play_with(
             detune: 0.0,
             velocity,
             soft: false,
+            output: 0,
             brightness: 0.0,
             id: NoteId::new(i32::from(key) + 1000),
             serial: serial as u64,
