@@ -91,10 +91,11 @@ impl Rattle {
         (self.felt.force - self.rest) as f32
     }
 
-    /// Energy of the rattle and its surface, with that of its weight on the body.
+    /// Energy of the rattle and its surface, with that of its weight on the body, and of modes that only give way, by `stillness`.
     #[cfg(test)]
-    pub(crate) fn energy(&self) -> f64 {
+    pub(crate) fn energy(&self, stillness: f64) -> f64 {
         let moving = if self.inverse_mass > 0.0 { 0.5 * self.speed * self.speed / self.inverse_mass } else { 0.0 };
-        moving + 0.5 * self.felt.psi * self.felt.psi - self.rest * self.felt.dent()
+        let held = 0.5 * stillness * (self.felt.force - self.rest) * (self.felt.force - self.rest);
+        moving + held + 0.5 * self.felt.psi * self.felt.psi - self.rest * self.felt.dent()
     }
 }
