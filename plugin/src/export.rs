@@ -3,7 +3,8 @@
 #![allow(unsafe_code, missing_docs, reason = "the wrapper's macros define exported symbols")]
 
 use crate::plugin::Sprung;
+use crate::resonator::Resonator;
 use nice_plug::prelude::*;
 
-nice_export_clap!(Sprung);
-nice_export_vst3!(Sprung);
+nice_export_clap!(Sprung, Resonator);
+nice_export_vst3!(Sprung, Resonator);

@@ -3,6 +3,7 @@
 //! | module | holds |
 //! |---|---|
 //! | `plugin` | the description that hosts read, and the calls that they make |
+//! | `resonator`, `chord` | the same as an effect: Sprung Resonator; what it holds while nobody plays |
 //! | `params` | the host's parameters, made from [`sprung::params::PARAMS`] |
 //! | `loaded` | the loaded sound with exact values, and how the audio thread gets it without waiting |
 //! | `live` | the audio thread: follows parameters, passes events on, renders |
@@ -18,6 +19,7 @@
 //!
 //! The wrapper is nice-plug. Its normalised values are called positions here: knob positions from 0 to 1.
 
+mod chord;
 mod devices;
 mod editor;
 mod events;
@@ -28,9 +30,11 @@ mod loaded;
 mod lock;
 mod params;
 mod plugin;
+mod resonator;
 #[cfg(feature = "standalone")]
 pub mod standalone;
 mod state;
 mod tail;
 
 pub use plugin::Sprung;
+pub use resonator::Resonator;

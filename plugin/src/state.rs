@@ -22,6 +22,13 @@ use std::collections::BTreeMap;
 /// The wrapper's name for the state.
 pub(crate) const FIELD: &str = "sprung";
 
+/// The wrapper's name for a mark in states of the effect, whose sounds are loaded without changes.
+pub(crate) const EFFECT_FIELD: &str = "resonator";
+
+/// What moves the masses, besides the sound that comes in.
+const EXCITERS: [Param; 6] =
+    [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel, Param::NoiseHeld, Param::BowLevel, Param::BreathLevel];
+
 /// The state format that is read and written.
 const FORMAT: u64 = 1;
 
@@ -119,6 +126,24 @@ impl State {
             Playable::Kit(kit) => *kit.kit().values(),
         };
         Self { playable, values, positions: positions_of(&values), seed, view }
+    }
+
+    /// The state of a sound as a resonator. A sound that no incoming sound drives has it at 0 dB, and nothing else moves its
+    /// masses; one that has an input level stays as its author has made it.
+    pub(crate) fn driven(mut self) -> Self {
+        let input = Param::InputLevel;
+        if self.values.get(input) > input.info().min {
+            return self;
+        }
+        let off = EXCITERS.map(|param| (param, param.info().min));
+        for (param, value) in off.into_iter().chain([(input, 0.0)]) {
+            self.values.set(param, value);
+            self.positions[param as usize] = param.info().normalise(value) as f32;
+        }
+        if let Playable::Preset(preset) = &mut self.playable {
+            preset.patch.values = self.values;
+        }
+        self
     }
 
     /// The part of the state for the audio thread. Computes the sounds.

@@ -41,8 +41,17 @@ impl Instance {
 
     /// A new instance from a library that is already open.
     pub(crate) fn of(entry: &PluginEntry, tells_threads: bool) -> Self {
+        Self::of_plugin(entry, 0, tells_threads)
+    }
+
+    /// A new instance of the effect, Sprung Resonator.
+    pub(crate) fn resonator(entry: &PluginEntry) -> Self {
+        Self::of_plugin(entry, 1, true)
+    }
+
+    fn of_plugin(entry: &PluginEntry, index: u32, tells_threads: bool) -> Self {
         let factory = entry.get_factory::<PluginFactory>().expect("the file has plugins");
-        let id: &CStr = factory.plugin_descriptor(0).and_then(|descriptor| descriptor.id()).expect("it has one");
+        let id: &CStr = factory.plugin_descriptor(index).and_then(|descriptor| descriptor.id()).expect("it has one");
         let info = HostInfo::new("Sprung's tests", "Sprung", "", env!("CARGO_PKG_VERSION")).unwrap();
         let clack = PluginInstance::<Host>::new(
             |_| Calls::new(tells_threads),
