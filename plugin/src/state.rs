@@ -16,6 +16,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use sprung::params::{PARAM_COUNT, PARAMS, Param, Unit, Values};
 use sprung::patch::Patch;
+use sprung::patch::routes::amount_param;
 use sprung::preset::{Guide, Playable, Preset};
 use std::collections::BTreeMap;
 
@@ -129,14 +130,20 @@ impl State {
     }
 
     /// The state of a sound as a resonator. A sound that no incoming sound drives has it at 0 dB, and nothing else moves its
-    /// masses; one that has an input level stays as its author has made it.
+    /// masses, by a route neither; one that has an input level stays as its author has made it. In a kit, the knobs move each
+    /// sound by as much, so that what a route or a louder exciter adds may stay.
     pub(crate) fn driven(mut self) -> Self {
         let input = Param::InputLevel;
         if self.values.get(input) > input.info().min {
             return self;
         }
-        let off = EXCITERS.map(|param| (param, param.info().min));
-        for (param, value) in off.into_iter().chain([(input, 0.0)]) {
+        let mut set = vec![(input, 0.0)];
+        set.extend(EXCITERS.map(|param| (param, param.info().min)));
+        if let Playable::Preset(preset) = &self.playable {
+            let routes = preset.patch.routes.iter().filter(|(_, route)| EXCITERS.contains(&route.destination));
+            set.extend(routes.map(|(place, _)| (amount_param(place), 0.0)));
+        }
+        for (param, value) in set {
             self.values.set(param, value);
             self.positions[param as usize] = param.info().normalise(value) as f32;
         }
