@@ -153,10 +153,10 @@ impl Live {
 
     /// Handles an event. A chord of the effect ends before a note that is played, and begins after the last one.
     fn handle(&mut self, channel: u8, kind: EventKind) {
-        if let Some(chord) = &mut self.chord {
-            if chord.note_event(channel, &kind) {
-                self.follow_chord();
-            }
+        if let Some(chord) = &mut self.chord
+            && chord.note_event(channel, &kind)
+        {
+            self.follow_chord();
         }
         self.pass_on(channel, kind);
         self.follow_chord();

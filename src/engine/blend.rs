@@ -48,8 +48,7 @@ impl Blend {
 }
 
 fn within(wet: f32) -> f32 {
-    // NaN becomes 0.
-    wet.max(0.0).min(1.0)
+    if wet.is_nan() { 0.0 } else { wet.clamp(0.0, 1.0) }
 }
 
 #[cfg(test)]
