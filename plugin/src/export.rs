@@ -4,7 +4,8 @@
 
 use crate::multi::SprungMulti;
 use crate::plugin::Sprung;
+use crate::resonator::Resonator;
 use nice_plug::prelude::*;
 
-nice_export_clap!(Sprung, SprungMulti);
-nice_export_vst3!(Sprung, SprungMulti);
+nice_export_clap!(Sprung, SprungMulti, Resonator);
+nice_export_vst3!(Sprung, SprungMulti, Resonator);

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `plugin` | the description that hosts read, and the calls that they make |
 //! | `multi` | the same with outputs for pads and channels |
+//! | `resonator`, `chord` | the same as an effect: Sprung Resonator; what it holds while nobody plays |
 //! | `params` | the host's parameters, made from [`sprung::params::PARAMS`] |
 //! | `loaded` | the loaded sound with exact values, and how the audio thread gets it without waiting |
 //! | `live` | the audio thread: follows parameters, passes events on, renders |
@@ -19,6 +20,7 @@
 //!
 //! The wrapper is nice-plug. Its normalised values are called positions here: knob positions from 0 to 1.
 
+mod chord;
 mod devices;
 mod editor;
 mod events;
@@ -30,6 +32,7 @@ mod lock;
 mod multi;
 mod params;
 mod plugin;
+mod resonator;
 #[cfg(feature = "standalone")]
 pub mod standalone;
 mod state;
@@ -37,3 +40,4 @@ mod tail;
 
 pub use multi::SprungMulti;
 pub use plugin::Sprung;
+pub use resonator::Resonator;

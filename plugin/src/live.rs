@@ -1,5 +1,6 @@
 //! The audio thread: it follows the parameters, handles events at their frames, and renders.
 
+use crate::chord::Chord;
 use crate::events::translate;
 use crate::link::Touch;
 use crate::loaded::Loaded;
@@ -11,7 +12,7 @@ use nice_plug_egui::RepaintNotifier;
 use rtrb::Consumer;
 use sprung::engine::synth::Outputs;
 use sprung::engine::{Event, EventKind, Snapshot, Synth, TelemetryWriter};
-use sprung::params::{PARAM_COUNT, PARAMS, Param};
+use sprung::params::{Change, PARAM_COUNT, PARAMS, Param};
 use sprung::sound::kit::KEYS;
 use sprung::units::mono_from_stereo;
 use std::ops::Range;
@@ -42,6 +43,8 @@ pub(crate) struct Live {
     /// Number of voices that was last reported to the host.
     voices: u32,
     tail: Tail,
+    /// What the effect holds while nobody plays; the instrument has none.
+    chord: Option<Chord>,
     /// Number of the synth's ended notes that have been reported to the host.
     reported: usize,
     /// Events that the wrapper delivered too early, with the part of the block before their own.
@@ -74,6 +77,7 @@ impl Live {
             tempo: None,
             voices: 0,
             tail: Tail::new(offline),
+            chord: None,
             reported: 0,
             early: Vec::with_capacity(EVENT_CAPACITY),
             stereo: [[0.0; MONO_FRAMES]; 2],
@@ -86,12 +90,18 @@ impl Live {
         live
     }
 
+    /// Holds these keys from the next block on, while nobody plays: a bit for each key. Only the first call allocates.
+    pub(crate) fn hold(&mut self, keys: u128) {
+        self.chord.get_or_insert_default().hold(keys);
+    }
+
     /// Silences everything, and restarts with the loaded sound.
     pub(crate) fn reset(&mut self, params: &SprungParams) {
         self.follow(params);
         self.synth.reset();
         (self.offsets, self.tempo, self.reported) = ([0.0; PARAM_COUNT], None, 0);
         self.early.clear();
+        self.chord.iter_mut().for_each(Chord::reset);
         self.telemetry.release_keys();
     }
 
@@ -109,6 +119,7 @@ impl Live {
             self.synth.set_kit(&loaded.kit);
             // Assigned last: until here, the previous `loaded` has kept the previous kit alive.
             self.loaded = loaded;
+            self.chord.iter_mut().for_each(Chord::strike_again);
         }
         if at_once {
             self.tail.forget();
@@ -117,6 +128,9 @@ impl Live {
             for (index, info) in PARAMS.iter().enumerate() {
                 if moved(index) {
                     let value = self.loaded.value(index, positions[index]);
+                    if info.change == Change::NextNote {
+                        self.chord.iter_mut().for_each(Chord::strike_again);
+                    }
                     self.handle(0, EventKind::Param { param: info.param, value });
                 }
             }
@@ -138,7 +152,25 @@ impl Live {
         }
     }
 
+    /// Handles an event. A chord of the effect ends before a note that is played, and begins after the last one.
     fn handle(&mut self, channel: u8, kind: EventKind) {
+        if let Some(chord) = &mut self.chord
+            && chord.note_event(channel, &kind)
+        {
+            self.follow_chord();
+        }
+        self.pass_on(channel, kind);
+        self.follow_chord();
+    }
+
+    /// Ends and begins notes of the chord, if there is one.
+    fn follow_chord(&mut self) {
+        while let Some(kind) = self.chord.as_mut().and_then(Chord::next_event) {
+            self.pass_on(Chord::CHANNEL, kind);
+        }
+    }
+
+    fn pass_on(&mut self, channel: u8, kind: EventKind) {
         self.tail.forget();
         let event = Event { frame: 0, channel, kind };
         self.telemetry.note_event(&event);
@@ -172,6 +204,7 @@ impl Live {
         self.follow(params);
         self.follow_tempo(context.transport().tempo);
         self.follow_touches();
+        self.follow_chord();
         // A change of the play mode may have ended notes that were waiting for a key.
         self.report_ended(0, context);
         let voices = self.synth.values().get(Param::Voices) as u32;
@@ -299,6 +332,10 @@ impl Live {
     fn report_ended<P: Plugin<SysExMessage = ()>>(&mut self, frame: usize, context: &mut impl ProcessContext<P>) {
         let ended = self.synth.ended();
         for note in ended.get(self.reported..).unwrap_or_default() {
+            // The host knows nothing of the chord.
+            if note.id.is_some_and(Chord::is_own) {
+                continue;
+            }
             let voice_id = note.id.map_or(VoiceID::Wildcard, |id| VoiceID::ID(id.number()));
             // An error means that the host accepts no events, or no more of them: it is ignored.
             let _ = context.try_send_event(NoteEvent::VoiceTerminated {

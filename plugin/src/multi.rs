@@ -1,7 +1,7 @@
 //! Sprung Multi: the same instrument with sixteen stereo outputs beside the main one, for a kit's pads and for MIDI channels.
 
 use crate::editor::SprungEditor;
-use crate::plugin::{STEREO_IN, Sprung, layout, mono_input};
+use crate::plugin::{STEREO_IN, Sprung, add_pages, layout, mono_input};
 use nice_plug::prelude::*;
 use sprung::engine::synth::Outputs;
 use sprung::sound::kit::OUTPUTS;
@@ -106,7 +106,7 @@ impl ClapPlugin for SprungMulti {
     const CLAP_POLY_MODULATION_CONFIG: Option<PolyModulationConfig> = Sprung::CLAP_POLY_MODULATION_CONFIG;
 
     fn remote_controls(&self, context: &mut impl RemoteControlsContext) {
-        self.0.pages(context);
+        add_pages(&self.0.params, context);
     }
 }
 

@@ -127,13 +127,25 @@ pub(crate) struct SprungParams {
     slot: Slot,
     link: Link,
     extent: Extent,
+    /// Whether sounds are loaded as the effect plays them: [`State::driven`].
+    is_effect: bool,
     /// Locked while something is loaded or the whole state is read; never by the audio thread.
     locked: Mutex<Locked>,
 }
 
 impl Default for SprungParams {
     fn default() -> Self {
-        let state = State::default();
+        Self::of(State::default(), false)
+    }
+}
+
+impl SprungParams {
+    /// The parameters of the effect.
+    pub(crate) fn of_effect() -> Self {
+        Self::of(State::default().driven(), true)
+    }
+
+    fn of(state: State, is_effect: bool) -> Self {
         let loaded = Arc::new(state.loaded());
         let State { playable, positions, view, .. } = state;
         let knobs: Vec<Knob> = PARAMS.iter().map(Knob::new).collect();
@@ -142,11 +154,9 @@ impl Default for SprungParams {
         may_sound.keep(&loaded);
         let locked = Locked { playable, view, complaints: Arc::new([]), loaded: loaded.clone(), may_sound, loads: 0 };
         let (link, extent) = (Link::default(), Extent::default());
-        Self { knobs, slot: Slot::new(loaded), link, extent, locked: Mutex::new(locked) }
+        Self { knobs, slot: Slot::new(loaded), link, extent, is_effect, locked: Mutex::new(locked) }
     }
-}
 
-impl SprungParams {
     /// The knobs in the order of the table.
     pub(crate) fn knobs(&self) -> &[Knob] {
         &self.knobs
@@ -205,6 +215,12 @@ impl SprungParams {
     /// An open window stays as it is: it must not change under the user's hands when the host steps through sounds or
     /// takes something back.
     pub(crate) fn load(&self, Read { state, complaints }: Read) -> Arc<Loaded> {
+        let state = if self.is_effect { state.driven() } else { state };
+        self.load_as_it_is(Read { state, complaints })
+    }
+
+    /// As [`SprungParams::load`], but the effect changes nothing in it.
+    fn load_as_it_is(&self, Read { state, complaints }: Read) -> Arc<Loaded> {
         let loaded = Arc::new(state.loaded());
         let mut locked = self.locked();
         locked.playable = state.playable;
@@ -272,7 +288,10 @@ unsafe impl Params for SprungParams {
             read.complaints
                 .iter()
                 .for_each(|complaint| nice_warn!("a state was not understood as a whole: {complaint}"));
-            self.load(read);
+            match fields.contains_key(state::EFFECT_FIELD) {
+                true => self.load_as_it_is(read),
+                false => self.load(read),
+            };
             self.locked().loads += 1;
         }
     }

@@ -139,7 +139,7 @@ impl ClapPlugin for Sprung {
         Some(PolyModulationConfig { max_voice_capacity: MAX_VOICES, supports_overlapping_voices: true });
 
     fn remote_controls(&self, context: &mut impl RemoteControlsContext) {
-        self.pages(context);
+        add_pages(&self.params, context);
     }
 }
 
@@ -149,28 +149,28 @@ impl Sprung {
         let offline = config.process_mode == ProcessMode::Offline;
         self.live = Some(Live::new(f64::from(config.sample_rate), offline, &self.params));
     }
+}
 
-    /// The pages of a hardware controller.
-    pub(crate) fn pages(&self, context: &mut impl RemoteControlsContext) {
-        let mut add = |name: &str, params: &mut dyn Iterator<Item = Param>| {
-            context.add_section(name, |section| {
-                section.add_page(name, |page| {
-                    for knob in params.map(|param| &self.params.knobs()[param as usize]) {
-                        match knob {
-                            Knob::Continuous(knob) => page.add_param(knob),
-                            Knob::Stepped(knob) => page.add_param(knob),
-                        }
+/// The pages of a hardware controller for the parameters of the table.
+pub(crate) fn add_pages(params: &SprungParams, context: &mut impl RemoteControlsContext) {
+    let mut add = |name: &str, rows: &mut dyn Iterator<Item = Param>| {
+        context.add_section(name, |section| {
+            section.add_page(name, |page| {
+                for knob in rows.map(|param| &params.knobs()[param as usize]) {
+                    match knob {
+                        Knob::Continuous(knob) => page.add_param(knob),
+                        Knob::Stepped(knob) => page.add_param(knob),
                     }
-                });
+                }
             });
-        };
-        add("Essentials", &mut FIRST.into_iter());
-        // What a sound's author has put on macros comes before what the engine has.
-        let mut sections: Vec<_> = PARAMS.chunk_by(|a, b| a.section == b.section).collect();
-        sections.sort_by_key(|rows| rows[0].section != "Macros");
-        for rows in sections {
-            add(rows[0].section, &mut rows.iter().map(|info| info.param));
-        }
+        });
+    };
+    add("Essentials", &mut FIRST.into_iter());
+    // What a sound's author has put on macros comes before what the engine has.
+    let mut sections: Vec<_> = PARAMS.chunk_by(|a, b| a.section == b.section).collect();
+    sections.sort_by_key(|rows| rows[0].section != "Macros");
+    for rows in sections {
+        add(rows[0].section, &mut rows.iter().map(|info| info.param));
     }
 }
 
@@ -185,7 +185,24 @@ impl Vst3Plugin for Sprung {
 mod tests {
     use super::*;
     use crate::multi::SprungMulti;
+    use crate::resonator::Resonator;
     use serde_json::{Value, json};
+
+    fn class<P: Vst3Plugin>() -> Value {
+        let categories: Vec<&str> = P::VST3_SUBCATEGORIES.iter().map(|category| category.as_str()).collect();
+        json!({
+            "CID": P::VST3_CLASS_ID.map(|byte| format!("{byte:02X}")).concat(),
+            "Category": "Audio Module Class",
+            "Name": P::NAME,
+            "Vendor": P::VENDOR,
+            "Version": P::VERSION,
+            "SDKVersion": "VST 3.6.14",
+            "Sub Categories": categories,
+            "Class Flags": 2,
+            "Cardinality": i32::MAX,
+            "Snapshots": [],
+        })
+    }
 
     /// VST3 hosts may read this file instead of loading the library.
     #[test]
@@ -197,23 +214,7 @@ mod tests {
             "E-Mail": Sprung::EMAIL,
             "Flags": { "Unicode": true, "Classes Discardable": false, "Component Non Discardable": false },
         });
-        let categories: Vec<&str> = Sprung::VST3_SUBCATEGORIES.iter().map(|category| category.as_str()).collect();
-        let class = |name, id: [u8; 16]| {
-            json!({
-                "CID": id.map(|byte| format!("{byte:02X}")).concat(),
-                "Category": "Audio Module Class",
-                "Name": name,
-                "Vendor": Sprung::VENDOR,
-                "Version": Sprung::VERSION,
-                "SDKVersion": "VST 3.6.14",
-                "Sub Categories": categories,
-                "Class Flags": 2,
-                "Cardinality": i32::MAX,
-                "Snapshots": [],
-            })
-        };
-        let classes =
-            [class(Sprung::NAME, Sprung::VST3_CLASS_ID), class(SprungMulti::NAME, SprungMulti::VST3_CLASS_ID)];
+        let classes = [class::<Sprung>(), class::<SprungMulti>(), class::<Resonator>()];
         let expected = json!({
             "Name": Sprung::NAME,
             "Version": Sprung::VERSION,

@@ -16,11 +16,19 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use sprung::params::{PARAM_COUNT, PARAMS, Param, Unit, Values};
 use sprung::patch::Patch;
+use sprung::patch::routes::amount_param;
 use sprung::preset::{Guide, Playable, Preset};
 use std::collections::BTreeMap;
 
 /// The wrapper's name for the state.
 pub(crate) const FIELD: &str = "sprung";
+
+/// The wrapper's name for a mark in states of the effect, whose sounds are loaded without changes.
+pub(crate) const EFFECT_FIELD: &str = "resonator";
+
+/// What moves the masses, besides the sound that comes in.
+const EXCITERS: [Param; 6] =
+    [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel, Param::NoiseHeld, Param::BowLevel, Param::BreathLevel];
 
 /// The state format that is read and written.
 const FORMAT: u64 = 1;
@@ -119,6 +127,30 @@ impl State {
             Playable::Kit(kit) => *kit.kit().values(),
         };
         Self { playable, values, positions: positions_of(&values), seed, view }
+    }
+
+    /// The state of a sound as a resonator. A sound that no incoming sound drives has it at 0 dB, and nothing else moves its
+    /// masses, by a route neither; one that has an input level stays as its author has made it. In a kit, the knobs move each
+    /// sound by as much, so that what a route or a louder exciter adds may stay.
+    pub(crate) fn driven(mut self) -> Self {
+        let input = Param::InputLevel;
+        if self.values.get(input) > input.info().min {
+            return self;
+        }
+        let mut set = vec![(input, 0.0)];
+        set.extend(EXCITERS.map(|param| (param, param.info().min)));
+        if let Playable::Preset(preset) = &self.playable {
+            let routes = preset.patch.routes.iter().filter(|(_, route)| EXCITERS.contains(&route.destination));
+            set.extend(routes.map(|(place, _)| (amount_param(place), 0.0)));
+        }
+        for (param, value) in set {
+            self.values.set(param, value);
+            self.positions[param as usize] = param.info().normalise(value) as f32;
+        }
+        if let Playable::Preset(preset) = &mut self.playable {
+            preset.patch.values = self.values;
+        }
+        self
     }
 
     /// The part of the state for the audio thread. Computes the sounds.

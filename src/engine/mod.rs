@@ -14,11 +14,13 @@
 //! | `space/` | the effects after the voices: `dsp::space` with parameters, sleep and tails |
 //! | `synth/` | a kit on sixteen channels |
 //! | `ensemble/` | a synth for each channel, rendered in chunks and mixed |
+//! | `blend` | the balance of an effect between what comes in and what the synth makes of it |
 //! | `snapshot`, `telemetry`, `scope`, `atomic` | what displays read while the engine plays |
 //! | `voice_state` | a voice and its modes as they are, for labels |
 
 mod atomic;
 pub mod banks;
+mod blend;
 mod channel;
 mod controls;
 mod damping;
@@ -43,6 +45,7 @@ pub mod voice_manager;
 pub mod voice_state;
 mod zones;
 
+pub use blend::Blend;
 pub use ensemble::Ensemble;
 pub(crate) use ensemble::Stems;
 pub use event::{Event, EventKind, Expression};

@@ -28,7 +28,8 @@ fn render(patch: &Patch, events: &[Event], frames: usize) -> Vec<f32> {
 }
 
 fn rms(sound: &[f32]) -> f64 {
-    (sound.iter().map(|sample| f64::from(*sample).powi(2)).sum::<f64>() / sound.len() as f64).sqrt()
+    let squares = sound.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>();
+    (squares / sound.len() as f64).sqrt()
 }
 
 /// RMS of the differences between successive samples, relative to that of the samples.

@@ -36,6 +36,7 @@ mod pixels;
 mod process;
 #[cfg(target_os = "linux")]
 mod realtime;
+mod resonator;
 mod scan;
 #[cfg(target_os = "linux")]
 mod screen;
@@ -217,6 +218,16 @@ fn main() -> ExitCode {
             sound_that_comes_in_has_the_bits_of_the_command
             sixteen_channels_have_the_bits_of_one_synth
         }
+        Nothing: resonator {
+            the_factory_has_it_beside_the_instrument
+            its_ports_are_as_wide_in_as_out
+            a_held_chord_has_the_bits_of_the_command
+            notes_have_the_bits_of_the_command
+            notes_replace_the_chord_at_their_frames
+            its_state_comes_back_and_is_that_of_the_instrument
+            silence_gives_silence_after_the_tail
+            at_a_mix_of_0_the_sound_is_as_it_was
+        }
         Nothing: vst3_state {
             parameters_have_the_numbers_of_their_ids
             states_of_all_versions_load
@@ -235,6 +246,7 @@ fn main() -> ExitCode {
         }
         Nothing: realtime {
             process_neither_allocates_nor_locks_nor_calls_the_system
+            nor_does_the_effect
         }
         Screen: realtime {
             nor_does_it_with_the_window_open

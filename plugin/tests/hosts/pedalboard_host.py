@@ -12,11 +12,11 @@ from pedalboard import VST3Plugin
 def load(plugin, preset=None):
     # It would try out thousands of values of each of the 2,080 parameters that stand for MIDI controllers.
     pedalboard._pedalboard.PARAMETER_NAME_REGEXES_TO_IGNORE.add(re.compile(r"^MIDI Ch\. "))
-    synth = VST3Plugin(plugin)
+    synth = VST3Plugin(plugin, plugin_name="Sprung")
     if preset:
         # After a preset, the host goes on with the values that it knew before, and sets them when it resets the
         # plugin. A state makes it ask for the values.
-        other = VST3Plugin(plugin)
+        other = VST3Plugin(plugin, plugin_name="Sprung")
         other.load_preset(preset)
         synth.raw_state = other.raw_state
     return synth

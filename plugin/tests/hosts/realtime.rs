@@ -4,7 +4,7 @@
 //! system's library, and the kernel refuses every system call. (A lock made of atomic operations also needs a system
 //! call to wait.)
 
-use crate::host::{Address, Instance, Player, Sent};
+use crate::host::{Address, Instance, Player, Sent, open};
 use crate::patches::{drums, patches, state, state_of_kit};
 use crate::process::{command, scratch, succeeds, wait_until};
 use crate::screen::Screen;
@@ -23,6 +23,10 @@ const BLOCKS: u32 = 4_000;
 
 pub(crate) fn process_neither_allocates_nor_locks_nor_calls_the_system() {
     succeeds(watched("watch"));
+}
+
+pub(crate) fn nor_does_the_effect() {
+    succeeds(watched("watch-effect"));
 }
 
 pub(crate) fn nor_does_it_with_the_window_open() {
@@ -72,19 +76,23 @@ fn probe(name: &CStr) -> extern "C" fn() -> i32 {
 /// Runs in the processes that are started with the probe.
 pub(crate) fn work(name: &str) -> ExitCode {
     match name {
-        "watch" => play_under_watch(None),
-        "watch-window" => play_under_watch(Some(Parent::new())),
+        "watch" => play_under_watch(Instance::new(), None),
+        "watch-effect" => play_under_watch(Instance::resonator(&open()), None),
+        "watch-window" => play_under_watch(Instance::new(), Some(Parent::new())),
         sin => commit(sin),
     }
 }
 
 /// Plays on a watched thread, while this thread does what main threads do.
-fn play_under_watch(parent: Option<Parent>) -> ExitCode {
-    let mut instance = Instance::new();
+fn play_under_watch(mut instance: Instance, parent: Option<Parent>) -> ExitCode {
+    let is_effect = instance.parameters()[0].name == "Chord";
     let blocks = storm(&mut instance);
     let mut states: Vec<Vec<u8>> = patches().iter().map(|(_, patch)| state(patch)).collect();
     states.insert(1, state_of_kit(&drums()));
     let Player { mut instance, mut audio } = instance.play(48_000.0, 64);
+    if is_effect {
+        audio.feed_noise();
+    }
     let editor = parent.as_ref().map(|parent| Editor::open(&mut instance, parent));
     let (stop, played, loudest) = (AtomicBool::new(false), AtomicU32::new(0), AtomicU32::new(0));
     let watch = probe(c"sprung_watch");

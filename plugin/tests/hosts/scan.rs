@@ -19,9 +19,10 @@ fn text(string: Option<&CStr>) -> &str {
 pub(crate) fn the_descriptor_is_complete() {
     let entry = open();
     let factory = entry.get_factory::<PluginFactory>().unwrap();
-    assert_eq!(factory.plugin_count(), 2);
-    assert!(factory.plugin_descriptor(2).is_none());
+    assert_eq!(factory.plugin_count(), 3);
+    assert!(factory.plugin_descriptor(3).is_none());
     assert_eq!(text(factory.plugin_descriptor(1).unwrap().name()), "Sprung Multi");
+    assert_eq!(text(factory.plugin_descriptor(2).unwrap().name()), "Sprung Resonator");
     let descriptor = factory.plugin_descriptor(0).unwrap();
     assert_eq!(text(descriptor.name()), "Sprung");
     assert_eq!(text(descriptor.version()), env!("CARGO_PKG_VERSION"));

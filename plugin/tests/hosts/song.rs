@@ -16,10 +16,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// A name, and a function that returns the length of each next block.
-type Division = (&'static str, Box<dyn FnMut() -> usize>);
+pub(crate) type Division = (&'static str, Box<dyn FnMut() -> usize>);
 
 /// Ways to divide a song into blocks.
-fn divisions() -> Vec<Division> {
+pub(crate) fn divisions() -> Vec<Division> {
     let mut n = 0;
     let random = move || {
         n += 1;
@@ -41,7 +41,7 @@ pub(crate) fn rendered_by_the_command(midi: &[u8], kit: &Arc<Kit>) -> Vec<Vec<f3
     rendered(&Job::new(&song, kit, options))
 }
 
-fn rendered(job: &Job) -> Vec<Vec<f32>> {
+pub(crate) fn rendered(job: &Job) -> Vec<Vec<f32>> {
     job.samples().unwrap().into()
 }
 

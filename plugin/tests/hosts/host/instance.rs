@@ -49,6 +49,11 @@ impl Instance {
         Self::at(entry, tells_threads, 0)
     }
 
+    /// A new instance of the effect, Sprung Resonator.
+    pub(crate) fn resonator(entry: &PluginEntry) -> Self {
+        Self::at(entry, true, 2)
+    }
+
     fn at(entry: &PluginEntry, tells_threads: bool, index: u32) -> Self {
         let factory = entry.get_factory::<PluginFactory>().expect("the file has plugins");
         let id: &CStr = factory.plugin_descriptor(index).and_then(|descriptor| descriptor.id()).expect("it has one");
