@@ -68,7 +68,7 @@ pub(crate) fn the_factory_has_it_beside_the_instrument() {
     let entry = open();
     let factory = entry.get_factory::<PluginFactory>().unwrap();
     let text = |string: Option<&std::ffi::CStr>| string.unwrap().to_str().unwrap().to_owned();
-    let descriptors = [0, 1].map(|index| factory.plugin_descriptor(index).unwrap());
+    let descriptors = [0, 2].map(|index| factory.plugin_descriptor(index).unwrap());
     let listed = descriptors.each_ref().map(|descriptor| (text(descriptor.id()), text(descriptor.name())));
     let both = [("org.sprung.sprung", "Sprung"), ("org.sprung.resonator", "Sprung Resonator")];
     assert_eq!(listed, both.map(|(id, name)| (id.to_owned(), name.to_owned())));
