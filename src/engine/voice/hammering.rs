@@ -68,6 +68,11 @@ impl Hammering {
         self.hammer = Hammer::new(HammerLaw { compliance, stillness, ..self.law });
     }
 
+    /// Takes back a hammer that has not begun to fly: the patch of its note was replaced in the same frame.
+    pub(super) fn give_up(&mut self) {
+        self.is_waiting = false;
+    }
+
     /// Whether a hammer touches the body, or is about to.
     pub(super) fn is_on(&self) -> bool {
         self.is_waiting || self.hammer.is_there()

@@ -175,7 +175,10 @@ impl SynthVoice {
                 self.move_controls(base, wheels, frames);
             }
         }
-        instrument.into_iter().for_each(|instrument| self.begin_hammer(instrument));
+        match instrument {
+            Some(instrument) => self.begin_hammer(instrument),
+            None => self.strike.hammering.give_up(),
+        }
         self.control_rattle(instrument);
         self.pitch.aim(&self.controls, &bends, &self.clock, frames);
         self.aim_gain(start, wheels, frames);
