@@ -85,7 +85,8 @@ pub struct Limiter {
 /// Statistics of a limiter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Work {
-    /// Lowest gain applied to a sample, an amplitude ratio; 1 if no sample was lowered.
+    /// Lowest gain, an amplitude ratio; 1 if it never fell, as by a peak that nothing followed. Before a first peak is known, single
+    /// samples can be lowered by more, down to 0.
     pub least_gain: f64,
     /// Frames that were lowered by more than 0.1 dB.
     pub frames: u64,
@@ -194,7 +195,7 @@ impl Limiter {
         let is_unchanged = self.gain == 1.0 && share == 1.0;
         self.unchanged_frames = if is_unchanged { TAPS.min(self.unchanged_frames + 1) } else { 0 };
         let applied = self.gain * f64::from(share);
-        self.work.least_gain = self.work.least_gain.min(applied);
+        self.work.least_gain = self.work.least_gain.min(self.gain);
         self.work.frames += u64::from(applied < WORK);
         out
     }

@@ -84,8 +84,8 @@ fn the_gain_that_the_limiter_advises_keeps_the_balance_and_leaves_it_nothing_to_
         [program(0, 19), program(1, 0)].into_iter().chain(notes(0)).chain(notes(1)).chain([end(480)]).collect();
     sandbox.write("in.mid", song(&all));
     for (base, before) in [
-        // At 8 kHz the limiter overshoots on the attacks of a piano by far, and its advice with it.
-        ("render in.mid --tail none --rate 16000", 18.0),
+        // A piano at 8 kHz is so loud so soon that single samples are lowered to nothing.
+        ("render in.mid --tail none --rate 8000", 18.0),
         ("render in.mid --programs none --tail none --rate 8000", 12.0),
         ("render --note C4,E4,G4,C5 --velocity 127 --length 0.5 --tail none --set gain=6 --rate 8000", 0.0),
     ] {

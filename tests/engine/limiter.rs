@@ -255,7 +255,6 @@ fn rendered_chords(step: usize) {
         } else if unlimited > 0.0 {
             let lowered = db_from_gain(work.least_gain);
             // A first peak is clipped, and only the later peaks are lowered by the gain.
-            // Noise can leave no room for a single sample, which then becomes 0.
             assert!(lowered < -0.9, "{}: {unlimited:.2} {lowered:.2}", preset.name);
             assert!(work.frames > 100, "{}: {}", preset.name, work.frames);
         }

@@ -70,6 +70,15 @@ impl Player<'_> {
             Self::Forces(forces) => forces[frame],
         }
     }
+
+    /// The share of a frame's force that is added to what is heard of the modes: half for a push that is all at the start of a frame,
+    /// 0 for a force that is spread over it.
+    pub(crate) fn heard_ahead(&self) -> f32 {
+        match self {
+            Self::Bow(_) | Self::Breath(_) => 0.5,
+            Self::Hammer(_) | Self::Rattle(_) | Self::Forces(_) => 0.0,
+        }
+    }
 }
 
 /// The parameters of a strike.

@@ -2,8 +2,8 @@
 //!
 //! The force of each frame depends on the state after the previous one. It acts on `x`, the audible coordinate, by a mode's
 //! *take*, and the sum of *give* times `x` is what the player feels: the speed of the point under a bow, the pressure behind a
-//! valve. What is heard is `x` in the middle of two pushes, where
-//! a constant force, as of a bow that only pulls, has hardly moved it. One pass over the bank turns all modes and adds up what they
+//! valve. What is heard of a bow and a breath is `x` in the middle of two pushes, where a constant force, as of a bow that only
+//! pulls, has hardly moved it; what a hammer has pushed by the end of a frame is heard then. One pass over the bank turns all modes and adds up what they
 //! give for the next frame, first by lane (`m mod 16`) and then by halves of the lanes, as in `step`. Only the first bank of a
 //! body is played: with several, each would have to wait for the sums of the others in every frame.
 //!
@@ -49,10 +49,12 @@ impl Kernel for Played<'_, '_> {
     fn run<V: Vector>(self, proof: V::Proof) {
         let Self { form, modes, state, drive, player, out } = self;
         let (live, frames) = (form.live.min(MAX_MODES), form.frames.min(CONTROL_FRAMES));
+        let ahead = player.heard_ahead();
         let mut motion = given::<V>(proof, modes, state, live);
         for i in 0..frames {
             let (middle, _) = stair(form.passed + i, form.line.max(1));
-            let forces = [player.force_on(i, motion), drive.push[i], drive.pull[i], drive.noise[i]];
+            let force = player.force_on(i, motion);
+            let forces = [force, ahead * force, drive.push[i], drive.pull[i], drive.noise[i]];
             let lines = [middle, (form.passed + i + 1) as f32];
             let [left, right, after] = turn::<V>(proof, modes, state, live, lines, forces, form.turned_noise);
             (out[0][i], out[1][i], motion) = (left, right, after);
@@ -92,7 +94,7 @@ fn given<V: Vector>(proof: V::Proof, modes: &Modes, state: &State, live: usize) 
     sum[0]
 }
 
-/// Applies the forces (player, push, pull, noise) of a frame, and turns all modes. `lines` has the positions on the ramps of
+/// Applies the forces (player, what of it is heard ahead, push, pull, noise) of a frame, and turns all modes. `lines` has the positions on the ramps of
 /// coefficients and gains. `turned_noise` says that noise acts on both coordinates.
 #[inline(always)]
 fn turn<V: Vector>(
@@ -101,12 +103,11 @@ fn turn<V: Vector>(
     state: &mut State,
     live: usize,
     lines: [f32; 2],
-    forces: [f32; 4],
+    forces: [f32; 5],
     turned_noise: bool,
 ) -> Sums {
     let mut totals = [Partial([0.0; LANES]); 3];
-    let [played, push, pull, noise] = [0, 1, 2, 3].map(|force| V::splat(proof, forces[force]));
-    let half = V::splat(proof, 0.5 * forces[0]);
+    let [played, ahead, push, pull, noise] = [0, 1, 2, 3, 4].map(|force| V::splat(proof, forces[force]));
     let (middle, passed) = (V::splat(proof, lines[0]), V::splat(proof, lines[1]));
     let mut at = 0;
     while at < live {
@@ -130,7 +131,7 @@ fn turn<V: Vector>(
         let right = passed.mul_add(modes.right_step.at(proof, at), modes.right.at(proof, at));
         let [to_left, to_right, to_motion] = &mut totals;
         let lane = at % LANES;
-        let heard = half.mul_add(take, x);
+        let heard = ahead.mul_add(take, x);
         heard.mul_add(left, V::load(proof, &to_left.0[lane..])).store(&mut to_left.0[lane..]);
         heard.mul_add(right, V::load(proof, &to_right.0[lane..])).store(&mut to_right.0[lane..]);
         x.mul_add(give, V::load(proof, &to_motion.0[lane..])).store(&mut to_motion.0[lane..]);
