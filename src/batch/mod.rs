@@ -19,6 +19,7 @@ mod manifest;
 mod run;
 mod scalar;
 mod template;
+mod twice;
 
 use crate::error::{Error, Result};
 pub use crate::io::FileFormat;

@@ -3,6 +3,7 @@
 use super::Batch;
 use super::draw::{Chance, Draw};
 use super::scalar::{Scale, text_of};
+use super::twice::key_twice;
 use crate::params::{PARAMS, Param};
 use crate::request::{Name, Request};
 use serde_json::{Map, Value};
@@ -73,6 +74,9 @@ impl Template {
         let Value::Object(object) = value else {
             return Err(whole("expected an object, as in {\"preset\": \"Kick\", \"note\": \"C4\"}".to_owned()));
         };
+        if let Some(twice) = key_twice(line) {
+            return Err((twice, "one object has it twice: expected it once".to_owned()));
+        }
         let names: Vec<String> = object.keys().cloned().collect();
         let (mut entries, mut repeat) = (Vec::new(), 1);
         for (key, value) in object {

@@ -81,6 +81,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let mut inputs = Inputs::default();
     let (reading, settings) = (args.reading.request(), args.sound.request());
     let mut song = args.song.as_deref().map(|path| reading.read(path, &mut inputs, &mut warn)).transpose()?;
+    if let Some(song) = &mut song {
+        settings.tuning.overrule(song, &mut warn);
+    }
     // Keyboards may select any program at any time.
     let sounds = settings.load(song.as_mut(), true, &mut inputs)?;
     if let Some(song) = &song {

@@ -20,6 +20,7 @@ pub(super) const EXAMPLES: &str = "\
 Examples:
   sprung sample Marimba -o marimba
   sprung sample drums.toml -o drums --velocities 4 --strikes 3 --format flac
+  sprung sample Celesta --set space=room --releases -o celesta
   sprung sample mine.toml -o mine --keys C2-C6 --every 2 --length 8
   sprung sample Marimba -o marimba --resume";
 
@@ -43,6 +44,9 @@ pub(super) struct Args {
     /// Strikes that alternate, 1-16; sounds whose strikes are all alike get one
     #[arg(long, default_value_t = 2, value_name = "N", value_parser = quantity::whole::<u8>(1..=16))]
     strikes: u8,
+    /// Sample what sounds after keys are let go too, such as a room; only the SFZ file plays it
+    #[arg(long)]
+    releases: bool,
     /// How long keys are held, and the longest sample, 0-86400 s
     #[arg(long, default_value = "4", value_name = "SECONDS", value_parser = quantity::seconds)]
     length: f64,
@@ -97,6 +101,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         every: args.every,
         velocities: args.velocities,
         strikes: args.strikes,
+        releases: args.releases,
         length: args.length,
         rate: args.rate,
         bits: args.bits,

@@ -40,6 +40,7 @@ pub use output::Output;
 pub(crate) use quantise::quantise;
 #[cfg(feature = "render")]
 pub use sampler_chunk::Loop;
+#[cfg(feature = "render")]
 pub(crate) use sampler_chunk::MIDDLE_C;
 pub use song::{Song, SongEvent};
 pub(crate) use song_cursor::{SILENCE_INTERVAL, SongCursor};

@@ -112,6 +112,11 @@ impl<'a> Job<'a> {
         song::frames(self.from, self.options.sample_rate.into())
     }
 
+    /// Frames that a block of so many stands for in the progress: an empty one is a block that was passed over.
+    pub(super) fn counted(&self, frames: usize) -> u64 {
+        if frames == 0 { self.options.block as u64 } else { frames as u64 }
+    }
+
     /// Length of the rendering in frames, unless it depends on the sound ([`Tail::Auto`]).
     pub(crate) fn known_frames(&self) -> Option<u64> {
         match self.options.tail {

@@ -63,8 +63,9 @@ impl<'a> Looped<'a> {
                 }
             }
             at = (at + left.len()) % frames;
-            done += left.len() as u64;
-            progress(Progress { frames: done, expected: done + frames as u64 })
+            done += job.counted(left.len());
+            let expected = 2 * frames as u64 + job.first_frame();
+            progress(Progress { frames: done, expected: expected.max(done) })
         })?;
         let [left, right] = &mut sound;
         let mut limiter = Limiter::new(job.options.sample_rate.into());

@@ -159,15 +159,17 @@ pub fn to_stem_wavs(
     }
     let mut peaks = vec![0.0_f32; stems.len()];
     let (mut sound, mut done) = ([Vec::new(), Vec::new()], 0);
+    let in_all = expected.saturating_add(job.first_frame());
     let rendered = job.render_stems(|block, frames| {
         for ((stem, writer), peak) in stems.iter().zip(&mut writers).zip(&mut peaks) {
+            let Some(block) = block else { break };
             stem.content.read(block, frames, stems, &mut sound);
             let (left, right) = mix.apply(&sound[0], &sound[1]);
             *peak = left.iter().chain(right).fold(*peak, |peak, sample| peak.max(sample.abs()));
             writer.write(left, right)?;
         }
-        done += frames as u64;
-        progress(Progress { frames: done, expected: expected.max(done) })
+        done += job.counted(frames);
+        progress(Progress { frames: done, expected: in_all.max(done) })
     })?;
     let clipped = writers.iter().map(WavWriter::clipped).sum();
     writers.into_iter().try_for_each(WavWriter::finish)?;

@@ -15,6 +15,8 @@ impl Job<'_> {
     /// Renders from the start and hands each block, left and right, to `sink`. The first error of `sink` ends the
     /// rendering. Memory use does not grow with the length. The same job always gives the same samples.
     ///
+    /// For each block of what comes before [`Job::from`], `sink` gets an empty one, so that it can end the work there too.
+    ///
     /// Blocks of 512 frames and more are shared between the threads of the current Rayon pool (see
     /// [`on_threads`](super::on_threads)): channels are rendered in parallel, and the next block is rendered while
     /// `sink` works on one. The samples do not depend on this, and `sink` receives the blocks in order.
@@ -45,7 +47,7 @@ impl Job<'_> {
         mut labels: Option<&mut Labels>,
         mut sink: impl FnMut(&[f32], &[f32]) -> Result<()> + Send,
     ) -> Result<Rendered> {
-        let mut stream = Stream::new(self)?;
+        let mut stream = Stream::new(self, || sink(&[], &[]))?;
         if labels.is_some() {
             stream.ensemble.separate_strikes();
         }
@@ -74,19 +76,19 @@ impl Job<'_> {
         &self,
         mut sink: impl FnMut(&[f32], &[f32]) -> Result<()>,
     ) -> Result<(Rendered, bool)> {
-        let mut stream = Stream::new(self)?;
+        let mut stream = Stream::new(self, || sink(&[], &[]))?;
         stream.ensemble.leave_unlimited();
         stream.each_block(self.options.block, |_, left, right| sink(left, right))?;
         Ok((stream.rendered(), stream.ensemble.is_limiter_wanted()))
     }
 
-    /// Renders, and hands the stems of each block and its number of frames to `sink`.
-    pub(super) fn render_stems(&self, mut sink: impl FnMut(&Stems, usize) -> Result<()>) -> Result<Rendered> {
-        let mut stream = Stream::new(self)?;
+    /// Renders, and hands the stems of each block and its number of frames to `sink`; none for the blocks that are passed over.
+    pub(super) fn render_stems(&self, mut sink: impl FnMut(Option<&Stems>, usize) -> Result<()>) -> Result<Rendered> {
+        let mut stream = Stream::new(self, || sink(None, 0))?;
         stream.ensemble.keep_stems();
         stream.each_block(self.options.block, |ensemble, left, _| {
             if let Some(stems) = ensemble.stems() {
-                sink(stems, left.len())?;
+                sink(Some(stems), left.len())?;
                 stems.clear();
             }
             Ok(())
@@ -111,7 +113,8 @@ struct Stream<'a> {
 }
 
 impl<'a> Stream<'a> {
-    fn new(job: &Job<'a>) -> Result<Self> {
+    /// Advances to the first frame; `passed` is called for each block that is passed over.
+    fn new(job: &Job<'a>, passed: impl FnMut() -> Result<()>) -> Result<Self> {
         job.options.check()?;
         let options = &job.options;
         let sample_rate = f64::from(options.sample_rate);
@@ -134,13 +137,13 @@ impl<'a> Stream<'a> {
             first_frame,
             end_frame: job.known_frames().map(|frames| first_frame.saturating_add(frames)),
         };
-        stream.pass_over(options.block);
+        stream.pass_over(options.block, passed)?;
         Ok(stream)
     }
 
     /// Advances to the first frame: obeys all messages at their frames, but leaves notes out. So controllers, programs and oscillators
     /// are there as they would be if the notes had been played.
-    fn pass_over(&mut self, block: usize) {
+    fn pass_over(&mut self, block: usize, mut passed: impl FnMut() -> Result<()>) -> Result<()> {
         let [mut left, mut right] = [vec![0.0; block], vec![0.0; block]];
         self.ensemble.leave_out_notes(true);
         while self.song.frame() < self.first_frame {
@@ -148,8 +151,10 @@ impl<'a> Stream<'a> {
             self.events.clear();
             self.song.advance(frames, &mut self.events);
             self.ensemble.process(&self.events, &mut left[..frames], &mut right[..frames]);
+            passed()?;
         }
         self.ensemble.leave_out_notes(false);
+        Ok(())
     }
 
     /// Renders to the end, and hands the ensemble and its output to `visit` after each block of up to so many frames.

@@ -1,9 +1,9 @@
 //! Tests of lengths, tails and threads of renderings.
 
-use super::{Job, Options, Rendered, Tail, on_threads};
+use super::{Delivery, Job, Options, Progress, Rendered, Tail, on_threads, to_wav};
 use crate::engine::EventKind;
 use crate::error::Error;
-use crate::io::{Song, SongEvent};
+use crate::io::{Inputs, Output, Song, SongEvent, Target};
 use crate::params::Param;
 use crate::patch::{Mode, ModeTable, Patch};
 use crate::sound::Kit;
@@ -97,6 +97,35 @@ fn options_out_of_range_and_errors_of_the_sink_end_it() {
     });
     assert!(matches!(result, Err(Error::Interrupted)));
     assert_eq!(blocks, 3);
+}
+
+#[test]
+fn what_is_passed_over_can_be_ended_and_is_part_of_the_progress() {
+    let (song, kit) = (Song::chord(&[60.0], 1.0, 2.0), Kit::of_patch(&Patch::default()));
+    let job = Job { from: 1.5, ..Job::new(&song, &kit, options(48_000, 1000, Tail::None)) };
+    let mut lengths = Vec::new();
+    job.render(|left, _| {
+        lengths.push(left.len());
+        Ok(())
+    })
+    .unwrap();
+    assert_eq!(lengths, [vec![0; 72], vec![1000; 24]].concat());
+    let mut blocks = 0;
+    let result = job.render(|_, _| {
+        blocks += 1;
+        if blocks == 3 { Err(Error::Interrupted) } else { Ok(()) }
+    });
+    assert!(matches!(result, Err(Error::Interrupted)) && blocks == 3);
+    let folder = tempfile::tempdir().unwrap();
+    let target = Target::Path(folder.path().join("out.wav"));
+    let mut output = Output::create(&target, false, &Inputs::default()).unwrap();
+    let mut shown = Vec::new();
+    to_wav(&job, &Delivery::default(), &mut output, |Progress { frames, expected }| {
+        shown.push((frames, expected));
+        Ok(())
+    })
+    .unwrap();
+    assert_eq!((shown.len(), shown[0], shown[95]), (96, (1000, 96_000), (96_000, 96_000)));
 }
 
 /// Notes on all channels, which sometimes change their sounds and choke each other.

@@ -43,9 +43,9 @@ impl Default for Delivery {
 /// Progress of the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// Frames rendered so far, in all passes.
+    /// Frames rendered or passed over so far, in all passes.
     pub frames: u64,
-    /// Minimum number of frames in total. A tail whose length depends on the sound is not included.
+    /// Minimum number of frames in total, with those before [`Job::from`](super::Job::from). A tail whose length depends on the sound is not included.
     pub expected: u64,
 }
 
@@ -182,10 +182,11 @@ pub(super) fn write(
 
     let length_needed = !output.is_seekable() && source.known_frames().is_none();
     let two_passes = length_needed || !matches!(delivery.level, Level::Gain(_));
-    let expected = least_frames * (1 + u64::from(two_passes));
+    let passed = if source.is_loop() { 0 } else { job.first_frame() };
+    let expected = least_frames.saturating_add(passed).saturating_mul(1 + u64::from(two_passes));
     let mut rendered_frames = 0;
     let mut advance = |frames: usize| {
-        rendered_frames += frames as u64;
+        rendered_frames += job.counted(frames);
         progress(Progress { frames: rendered_frames, expected: expected.max(rendered_frames) })
     };
 

@@ -128,6 +128,9 @@ impl Request {
             Some(path) => self.reading.read_part(path, inputs, warn).map(|(song, from)| (Some(song), from))?,
             None => (None, 0.0),
         };
+        if let Some(song) = &mut song {
+            self.sound.tuning.overrule(song, warn);
+        }
         let sounds = self.sound.load(song.as_mut(), false, inputs)?;
         let song = match song {
             Some(song) => song,

@@ -40,6 +40,18 @@ impl TuningRequest {
         Ok(())
     }
 
+    /// Leaves the song's own tunings out if there is a scale: changes of single keys would mix two tunings. `warn` is told so.
+    pub fn overrule(&self, song: &mut Song, warn: &mut dyn FnMut(&str)) {
+        if self.scale.is_none() {
+            return;
+        }
+        let before = song.events.len();
+        song.events.retain(|event| !matches!(event.kind, EventKind::Tune { .. }));
+        if song.events.len() < before {
+            warn("--scale goes before the tunings by MIDI Tuning Standard in the song: they were left out");
+        }
+    }
+
     /// Returns an error for notes that a scale cannot tune: those between two keys. A key that is given twice is an
     /// error too, since the second note would sound on the neighbouring key.
     pub(super) fn check_notes(&self, notes: &[String]) -> Result<()> {

@@ -18,6 +18,8 @@ pub(super) struct Line {
     pub(super) looped: Option<[u64; 2]>,
     /// Seconds in which it falls by 60 dB when the key is let go; none if it rings on.
     pub(super) release: Option<f64>,
+    /// dB a second by which the held sound falls, if the sample is what sounds after it.
+    pub(super) fall: Option<f64>,
 }
 
 /// The list, as it was at the start, and open to be continued.
@@ -37,6 +39,7 @@ impl Line {
             frames: value["frames"].as_u64()?,
             looped: ends(&value["loop"]),
             release: value["release"].as_f64(),
+            fall: value["fall"].as_f64(),
         })
     }
 }
@@ -76,8 +79,9 @@ impl List {
 
     /// Adds a finished sample.
     pub(super) fn add(&self, line: &Line) -> Result<()> {
-        let Line { file, frames, looped, release } = line;
-        self.write(&json!({ "file": file, "frames": frames, "loop": looped, "release": release }).to_string())
+        let Line { file, frames, looped, release, fall } = line;
+        let line = json!({ "file": file, "frames": frames, "loop": looped, "release": release, "fall": fall });
+        self.write(&line.to_string())
     }
 
     fn write(&self, line: &str) -> Result<()> {
@@ -87,7 +91,7 @@ impl List {
 
 /// All that a sample depends on.
 fn settings(sampling: &Sampling, playable: &Playable) -> String {
-    let Sampling { keys, every, velocities, strikes, length, rate, bits, format, seed, .. } = sampling;
+    let Sampling { keys, every, velocities, strikes, releases, length, rate, bits, format, seed, .. } = sampling;
     let keys = keys.as_ref().map(|keys| [*keys.start(), *keys.end()]);
     // A kit's own text has only the names of its presets.
     let presets: Vec<String> = playable.clone().presets_mut().iter().map(|preset| preset.to_toml()).collect();
@@ -99,6 +103,7 @@ fn settings(sampling: &Sampling, playable: &Playable) -> String {
         "every": every,
         "velocities": velocities,
         "strikes": strikes,
+        "releases": releases,
         "length": length,
         "rate": rate,
         "bits": bits.bits(),

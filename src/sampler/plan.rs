@@ -1,4 +1,4 @@
-//! What is sampled: zones of keys, layers of velocities, and alternating strikes.
+//! What is sampled: zones of keys, layers of velocities, alternating strikes, and what sounds after keys are let go.
 
 use super::settings::Sampling;
 use super::strike::strikes_differ;
@@ -22,16 +22,29 @@ pub(super) struct Zone {
     pub(super) choke: u8,
     /// Whether a note rings on when its key is let go.
     pub(super) rings_on: bool,
+    /// Whether its releases are samples of their own.
+    pub(super) has_releases: bool,
+    /// Number of strikes that alternate; 1 if all are alike.
+    pub(super) strikes: usize,
     /// Cents per key.
     pub(super) tracking: f64,
 }
 
-/// One sample: a strike of a zone in a velocity layer.
+/// What of a note a sample has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    /// The sound from a strike on, which is one of those that alternate, from 0.
+    Strike(usize),
+    /// The sound from the end of the key's hold on.
+    Release,
+}
+
+/// One sample of a zone in a velocity layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Take {
     pub(super) zone: usize,
     pub(super) layer: usize,
-    pub(super) strike: usize,
+    pub(super) part: Part,
 }
 
 /// Everything that is sampled.
@@ -39,34 +52,38 @@ pub(super) struct Plan {
     pub(super) zones: Vec<Zone>,
     /// The velocities of each layer. The highest is sampled.
     pub(super) layers: Vec<RangeInclusive<u8>>,
-    pub(super) strikes: usize,
     pub(super) takes: Vec<Take>,
 }
 
 impl Plan {
     pub(super) fn new(sampling: &Sampling, playable: &Playable, kit: &Arc<Kit>) -> Result<Self> {
-        let zones = match playable {
+        let mut zones = match playable {
             Playable::Kit(_) => pads(kit, sampling.keys.as_ref()),
             Playable::Preset(preset) => {
                 let own = preset.guide.lowest..=preset.guide.highest;
                 spread(kit, sampling.keys.as_ref().unwrap_or(&own), sampling.every)
             }
         };
-        let Some(first) = zones.first() else {
+        if zones.is_empty() {
             return Err(Error::value("--keys", "none of these keys sounds: expected some that the sound has"));
-        };
+        }
+        for zone in &mut zones {
+            zone.has_releases = sampling.releases && !zone.rings_on;
+            if sampling.strikes > 1 && strikes_differ(sampling, kit, zone.key) {
+                zone.strikes = sampling.strikes.into();
+            }
+        }
         let count = u16::from(sampling.velocities.clamp(1, 127));
         let top = |layer: u16| (127 * layer / count) as u8;
         let layers: Vec<RangeInclusive<u8>> = (0..count).map(|layer| top(layer) + 1..=top(layer + 1)).collect();
-        let differ = sampling.strikes > 1 && strikes_differ(sampling, kit, first.key);
-        let strikes = if differ { usize::from(sampling.strikes) } else { 1 };
-        let mut takes = Vec::with_capacity(zones.len() * layers.len() * strikes);
-        for zone in 0..zones.len() {
+        let mut takes = Vec::new();
+        for (zone, Zone { strikes, has_releases, .. }) in zones.iter().enumerate() {
             for layer in 0..layers.len() {
-                takes.extend((0..strikes).map(|strike| Take { zone, layer, strike }));
+                let parts = (0..*strikes).map(Part::Strike).chain(has_releases.then_some(Part::Release));
+                takes.extend(parts.map(|part| Take { zone, layer, part }));
             }
         }
-        Ok(Self { zones, layers, strikes, takes })
+        Ok(Self { zones, layers, takes })
     }
 
     /// The file of a sample, in the folder.
@@ -75,7 +92,11 @@ impl Plan {
         let name = if zone.name.is_empty() { String::new() } else { format!("{}-", slug(&zone.name)) };
         let velocity = self.layers[take.layer].end();
         let ending = sampling.format.ending();
-        format!("samples/{:03}-{name}v{velocity:03}-{}.{ending}", zone.key, take.strike + 1)
+        let part = match take.part {
+            Part::Strike(strike) => (strike + 1).to_string(),
+            Part::Release => "release".to_owned(),
+        };
+        format!("samples/{:03}-{name}v{velocity:03}-{part}.{ending}", zone.key)
     }
 }
 
@@ -110,7 +131,7 @@ fn zone(kit: &Kit, key: u8, keys: RangeInclusive<u8>) -> Option<Zone> {
     let rings_on = NoteOff::from_value(patch.get(Param::NoteOff)) == NoteOff::Ring;
     let choke = kit.choke(pad, kit.values().get(Param::Choke));
     let tracking = f64::from(patch.get(Param::KeyTrack));
-    Some(Zone { key, keys, name: String::new(), choke, rings_on, tracking })
+    Some(Zone { key, keys, name: String::new(), choke, rings_on, has_releases: false, strikes: 1, tracking })
 }
 
 #[cfg(test)]

@@ -17,6 +17,8 @@ pub struct Sampling {
     pub velocities: u8,
     /// Number of strikes that alternate, at least 1. Sounds whose strikes are all alike get one.
     pub strikes: u8,
+    /// Whether what sounds after a key is let go is sampled too, for the SFZ file.
+    pub releases: bool,
     /// Seconds for which a key is held, and the longest sample.
     pub length: f64,
     /// Frames per second.

@@ -1,7 +1,7 @@
 //! Renders one sample, cuts it, and finds its loop.
 
 use super::list::Line;
-use super::plan::{Plan, Take};
+use super::plan::{Part, Plan, Take};
 use super::settings::Sampling;
 use super::strike::strike;
 use super::{release, steady};
@@ -19,17 +19,26 @@ const FADE: f64 = 0.02;
 /// Makes a sample.
 pub(super) fn make(sampling: &Sampling, plan: &Plan, kit: &Arc<Kit>, take: &Take, inputs: &Inputs) -> Result<Line> {
     let (zone, velocity) = (&plan.zones[take.zone], *plan.layers[take.layer].end());
-    let mut sound = strike(sampling, kit, zone.key, velocity, take.strike, [sampling.length, 0.0])?;
+    let hold = |number, times| strike(sampling, kit, zone.key, velocity, number, times);
+    let (mut sound, fall) = match take.part {
+        Part::Strike(number) => (hold(number, [sampling.length, 0.0])?, None),
+        Part::Release => {
+            let held = (release::HELD * f64::from(sampling.rate)) as usize;
+            let sound = hold(0, [release::HELD, sampling.length])?.map(|side| side[held.min(side.len())..].to_vec());
+            (sound, Some(release::fall(&hold(0, [sampling.length, 0.0])?, sampling.rate)))
+        }
+    };
     let whole = sound[0].len();
     let is_audible = |sample: &f32| sample.abs() >= AUDIBLE;
     // A silent take is a frame long, since samplers refuse files without one.
     let end = sound.iter().filter_map(|side| side.iter().rposition(is_audible)).max().map_or(1, |last| last + 1);
     sound.iter_mut().for_each(|side| side.truncate(end));
-    let looped = if end == whole && !zone.rings_on { steady::find(&sound, sampling.rate) } else { None };
+    let may_loop = end == whole && !zone.rings_on && fall.is_none();
+    let looped = if may_loop { steady::find(&sound, sampling.rate) } else { None };
     if end == whole && looped.is_none() {
         fade(&mut sound, (FADE * f64::from(sampling.rate)) as usize);
     }
-    let release = match zone.rings_on {
+    let release = match zone.rings_on || fall.is_some() {
         true => None,
         false => release::seconds(sampling, kit, zone.key, velocity)?,
     };
@@ -48,7 +57,8 @@ pub(super) fn make(sampling: &Sampling, plan: &Plan, kit: &Arc<Kit>, take: &Take
     };
     flac::write_as(sampling.format, &mut output, write)?;
     output.commit()?;
-    Ok(Line { file, frames: end as u64, looped: looped.map(|Loop { start, end }| [start, end]), release })
+    let looped = looped.map(|Loop { start, end }| [start, end]);
+    Ok(Line { file, frames: end as u64, looped, release, fall })
 }
 
 /// Fades out the last frames.

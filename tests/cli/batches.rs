@@ -317,6 +317,14 @@ fn wrong_jobs_are_named_by_line_and_key() {
             r#"{"note": "C2", "decay": 1, "set": {"decay": 2}}"#,
             "jobs.jsonl:2: set.decay: ‘decay’ is in the line as well: expected it once",
         ),
+        (
+            r#"{"note": "C2", "length": 1, "note": "C3"}"#,
+            "jobs.jsonl:2: note: one object has it twice: expected it once",
+        ),
+        (
+            r#"{"note": "C2", "set": {"decay": 1, "decay": 2}}"#,
+            "jobs.jsonl:2: decay: one object has it twice: expected it once",
+        ),
         (r#"{"note": "C2", "decay": "2 m"}"#, "jobs.jsonl:2: decay: ‘2 m’ is not a number in s"),
         (
             r#"{"note": "C2", "set": {"deacy": 1}}"#,

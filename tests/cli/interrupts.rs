@@ -1,6 +1,6 @@
 //! Files and messages that remain when a command is interrupted or killed.
 
-use crate::{DEFAULT_SIGNALS, Sandbox, Wav, signals};
+use crate::{DEFAULT_SIGNALS, Sandbox, Wav, end as finish, note_on, signals, song};
 use sprung::preset::{KitPreset, Preset};
 use std::io::Read;
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -55,6 +55,24 @@ fn interrupts_leave_nothing_behind() {
     let ready = |child: &mut Child| child.stdout.as_mut().unwrap().read_exact(&mut [0; 100]).is_ok();
     let child = start(&sandbox, &[], &format!("{ENDLESS} --tail none -o -"), ready);
     assert_eq!(end(child, "-INT").code(), Some(130), "also while nobody reads the pipe");
+}
+
+#[test]
+fn what_comes_before_a_part_of_a_song_can_be_interrupted() {
+    let sandbox = Sandbox::new();
+    sandbox.write("song.mid", song(&[note_on(0, 0, 60), finish(80_000 * 960)]));
+    for output in ["-o out.wav", "--stems stems"] {
+        let has_begun = |folder: &str| {
+            let files = std::fs::read_dir(sandbox.path(folder)).into_iter().flatten();
+            files.flatten().any(|file| file.file_name().to_str().unwrap().starts_with(".sprung-"))
+        };
+        let args = format!("render song.mid --from 79000 --rate 768k --bits 16 {output}");
+        let child = start(&sandbox, &[], &args, |_| has_begun(".") || has_begun("stems"));
+        // Signals are caught right after the file is made.
+        std::thread::sleep(Duration::from_millis(300));
+        assert_eq!(end(child, "-INT").code(), Some(130), "{output}");
+        assert_eq!(sandbox.files(), ["song.mid"], "{output}");
+    }
 }
 
 /// Interrupts a child and returns its exit code and its stderr.

@@ -83,7 +83,11 @@ fn bands(sound: &[Vec<f32>; 2]) -> Vec<Option<f64>> {
 
 /// Compares what an instrument plays with what the command renders, by band.
 fn compare(sandbox: &Sandbox, args: &str, played: &[Vec<f32>; 2]) {
-    sandbox.succeeds(&format!("render {args} --tail none --bits 32f --force -o source.wav"));
+    compare_with_tail(sandbox, &format!("{args} --tail none"), played);
+}
+
+fn compare_with_tail(sandbox: &Sandbox, args: &str, played: &[Vec<f32>; 2]) {
+    sandbox.succeeds(&format!("render {args} --bits 32f --force -o source.wav"));
     let source = sandbox.wav("source.wav");
     let side = |side| source.samples.iter().skip(side).step_by(2).map(|sample| *sample as f32).collect::<Vec<f32>>();
     let source = [side(0), side(1)];
@@ -127,7 +131,9 @@ fn a_steady_sound_is_looped_and_sounds_on_like_its_source() {
     let [region] = &regions(&text)[..] else { panic!("its strikes are all alike: {text}") };
     assert_eq!(region["loop_mode"], "loop_continuous");
     let release = number(region, "ampeg_release");
-    assert!((release - 0.5).abs() < 0.05, "{release}");
+    // A sampler falls by e⁹ in this time.
+    let seconds_of_60_db = release * 60.0 / (9.0 * 20.0 * std::f64::consts::LOG10_E);
+    assert!((seconds_of_60_db - 0.5).abs() < 0.05, "{release}");
     let played = play(&sandbox, "bowed", "init.sfz", [57.0, 127.0, 1.0], 6 * 48_000);
     compare(&sandbox, &format!("--preset init {sound} --note 57 --velocity 127 --length 6"), &played);
     let wav = sandbox.read(&format!("bowed/{}", region["sample"]));
@@ -156,6 +162,65 @@ fn a_kit_keeps_its_keys_and_choke_groups_and_rings_on() {
     let quiet = 24_000 - 960;
     let left = source.samples.iter().step_by(2).take(quiet);
     assert!(left.zip(&first[0]).all(|(a, b)| (a - f64::from(*b)).abs() < 1e-6), "but for the fade at its end");
+}
+
+#[test]
+fn a_pad_whose_strikes_are_alike_does_not_alternate() {
+    let sandbox = Sandbox::new();
+    let plain = "format = 1\nname = \"Plain\"\nmodes = [{ ratio = 1 }]\n[params]\nnoise_level = -60\n";
+    sandbox.write("plain.toml", plain);
+    let keys = "[{ key = \"C2\", sound = \"plain.toml\" }, { key = \"D2\", sound = \"Snare\" }]";
+    sandbox.write("two.toml", format!("kit = 1\nname = \"Two\"\nkeys = {keys}\n"));
+    sandbox.succeeds("sample two.toml --velocities 1 --strikes 2 --length 0.2 -o two");
+    let text = String::from_utf8(sandbox.read("two/two.sfz")).unwrap();
+    let regions = regions(&text);
+    let turns = |key: &str| -> Vec<_> {
+        let of_key = regions.iter().filter(|region| region["pitch_keycenter"] == key);
+        of_key.map(|region| ["seq_length", "seq_position"].map(|turn| region.get(turn).cloned())).collect()
+    };
+    let turn = |number: &str| [Some("2".to_owned()), Some(number.to_owned())];
+    assert_eq!((turns("36"), turns("38")), (vec![[None, None]], vec![turn("1"), turn("2")]));
+    let decent = String::from_utf8(sandbox.read("two/two.dspreset")).unwrap();
+    assert_eq!(["seqMode=\"always\"", "seqMode=\"round_robin\""].map(|mode| decent.matches(mode).count()), [1, 2]);
+}
+
+#[test]
+fn a_release_is_a_sample_that_is_softer_after_a_longer_note() {
+    let sandbox = Sandbox::new();
+    let sound = "--set space=room --set space_mix=40 --set decay=2 --set release=0.2 --set noise_level=-60";
+    let keys = "--keys 60-60 --velocities 1 --strikes 1 --length 2";
+    sandbox.succeeds(&format!("sample init {sound} {keys} --releases --bits 32f -o room"));
+    let text = String::from_utf8(sandbox.read("room/init.sfz")).unwrap();
+    let [held, let_go] = &regions(&text)[..] else { panic!("{text}") };
+    assert_eq!((held.get("trigger"), let_go["trigger"].as_str()), (None, "release"));
+    let sides = |region: &BTreeMap<String, String>| {
+        let wav = sandbox.wav(&format!("room/{}", region["sample"]));
+        [0, 1].map(|side| wav.samples.iter().skip(side).step_by(2).copied().collect::<Vec<f64>>())
+    };
+    let (held_sides, let_go_sides, release) = (sides(held), sides(let_go), number(held, "ampeg_release"));
+    for seconds in [0.3, 0.6, 1.2] {
+        let end = (seconds * 48_000.0) as usize;
+        let level = number(let_go, "volume") - number(let_go, "rt_decay") * seconds;
+        let gain = libm::pow(10.0, level / 20.0);
+        let played = [0, 1].map(|side| {
+            let sample = |n: usize| {
+                let held = held_sides[side].get(n).copied().unwrap_or(0.0);
+                let Some(after) = n.checked_sub(end) else { return held as f32 };
+                let time = after as f64 / 48_000.0;
+                let (fade, attack) = (libm::exp(-9.0 * time / release), time / number(let_go, "ampeg_attack"));
+                let after = let_go_sides[side].get(after).copied().unwrap_or(0.0);
+                (fade * held + gain * attack.min(1.0) * after) as f32
+            };
+            (0..end + 24_000).map(sample).collect::<Vec<f32>>()
+        });
+        assert!(played[0][end..].iter().any(|sample| sample.abs() > 1e-3));
+        let args = format!("--preset init {sound} --note 60 --velocity 127 --length {seconds} --tail 0.5");
+        compare_with_tail(&sandbox, &args, &played);
+    }
+    // Without the option, and in the DecentSampler file, there are none.
+    assert_eq!(String::from_utf8(sandbox.read("room/init.dspreset")).unwrap().matches("<sample ").count(), 1);
+    sandbox.succeeds(&format!("sample init {sound} {keys} -o dry"));
+    assert!(!String::from_utf8(sandbox.read("dry/init.sfz")).unwrap().contains("trigger"));
 }
 
 #[test]

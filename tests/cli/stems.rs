@@ -148,6 +148,26 @@ fn what_is_inaudible_after_the_gain_is_no_stem() {
 }
 
 #[test]
+fn stems_of_another_run_are_never_mixed_in_unseen() {
+    let sandbox = Sandbox::new();
+    write_song(&sandbox);
+    sandbox.succeeds("render song.mid --solo 1 --stems stems");
+    let old = names(&sandbox, "stems");
+    assert_eq!(old, ["01-marimba.wav", "space.wav"]);
+    sandbox.write("stems/notes.wav", "no stem");
+    let message = "stems has stems of another run (01-marimba.wav and 1 more)";
+    let refused = format!("--stems: {message}: expected another folder, or --force");
+    sandbox.fails("render song.mid --solo 10 --programs none --preset init --stems stems", 1, &refused);
+    sandbox.fails("render song.mid --solo 1 --format flac --stems stems", 1, &refused);
+    let forced = "render song.mid --solo 10 --programs none --preset init --stems stems --force";
+    let output = sandbox.sprung(forced).assert().success().get_output().clone();
+    let said = String::from_utf8(output.stderr).unwrap();
+    let told = format!("warning: {message}: they stay there, and are no part of this mix");
+    assert!(said.contains(&told), "{said}");
+    assert_eq!(names(&sandbox, "stems"), ["01-marimba.wav", "10-init.wav", "notes.wav", "space.wav"]);
+}
+
+#[test]
 fn no_stem_is_left_by_an_error() {
     let sandbox = Sandbox::new();
     write_song(&sandbox);

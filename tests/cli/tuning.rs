@@ -1,6 +1,7 @@
 //! Scala files on the command line.
 
 use crate::{Sandbox, end, note_on, song};
+use midly::{TrackEvent, TrackEventKind};
 
 const FIFTHS: &str = "Fifths\n1\n3/2\n";
 const C_AND_G: &str = "! C and G at 256 Hz and up\n12\n0\n127\n60\n60\n256.0\n2\n0\nx\nx\nx\nx\nx\nx\n1\n";
@@ -59,6 +60,27 @@ fn unmapped_keys_are_silent() {
     sandbox.write("wide.scl", "wide\n1\n120000.0\n");
     let wide = told("render --note 0,69 --preset init --scale wide.scl --length 0.01 --force -o out.wav");
     assert!(wide.contains("warning: 1 of 2 notes are silent: the scale takes their keys out of range"), "{wide}");
+}
+
+#[test]
+fn a_scale_goes_before_the_tunings_of_a_song() {
+    let sandbox = sandbox();
+    // Key 60 becomes 61, by MIDI Tuning Standard in real time.
+    let message = TrackEventKind::SysEx(&[0x7f, 0x7f, 8, 2, 0, 1, 60, 61, 0, 0, 0xf7]);
+    let tuning = TrackEvent { delta: 0.into(), kind: message };
+    sandbox.write("tuned.mid", song(&[tuning, note_on(0, 0, 60), note_on(0, 0, 70), end(200)]));
+    sandbox.write("plain.mid", song(&[note_on(0, 0, 60), note_on(0, 0, 70), end(200)]));
+    let render = |args: &str| {
+        let output = sandbox.sprung(&format!("render {args} --bits 32f --force -o out.wav")).assert().success();
+        (sandbox.read("out.wav"), String::from_utf8(output.get_output().stderr.clone()).unwrap())
+    };
+    let told = "warning: --scale goes before the tunings by MIDI Tuning Standard in the song: they were left out";
+    let (scaled, said) = render("tuned.mid --scale fifths.scl");
+    assert!(said.contains(told), "{said}");
+    let (plain, said) = render("plain.mid --scale fifths.scl");
+    assert!(scaled == plain && !said.contains("warning"), "{said}");
+    let (tuned, said) = render("tuned.mid");
+    assert!(tuned != render("plain.mid").0 && !said.contains("warning"), "{said}");
 }
 
 #[test]

@@ -82,6 +82,14 @@ fn strokes_on_a_ringing_string_add_up_at_most() {
     assert!(peak(&ended[200_000..]) < 1e-6);
 }
 
+/// Two strikes of a key at one frame are heard: its hammer strikes modes that have their pitch.
+#[test]
+fn two_strokes_at_one_frame_sound() {
+    let strokes = [Event::note_on(100, 60, 0.8), Event::note_on(100, 60, 0.8)];
+    let [single, both] = [&strokes[..1], &strokes].map(|strokes| rms(&render(&string(40), strokes, 9600)));
+    assert!(single > 1e-3 && both > 0.9 * single, "{single} {both}");
+}
+
 /// What needs the contacts of the modes for itself, or has none, is pushed as by a plain contact.
 #[test]
 fn where_no_hammer_can_strike_a_contact_does() {

@@ -5,7 +5,7 @@ use crate::interrupt;
 use crate::progress::Bar;
 use crate::terminal::{complain, complain_lines, counted, warn};
 use sprung::io::{FileFormat, Inputs, Output, Target, flac};
-use sprung::render::{on_threads, stems_of, to_stem_wavs};
+use sprung::render::{Stem, on_threads, stems_of, to_stem_wavs};
 use sprung::request::Request;
 use sprung::{Error, Result};
 use std::fs;
@@ -21,6 +21,10 @@ pub(super) fn run(args: &Args, request: &Request, folder: &Path) -> Result<()> {
     args.check_length(format, &job)?;
     let stems = stems_of(&job);
     let is_new = !folder.exists();
+    let others = others(folder, &stems, format);
+    if !args.force && !others.is_empty() {
+        return Err(Error::value("--stems", format!("{}: expected another folder, or --force", told(folder, &others))));
+    }
     fs::create_dir_all(folder).map_err(|source| Error::io(folder.display().to_string(), source))?;
     let write = || {
         let mut outputs = Vec::with_capacity(stems.len());
@@ -58,6 +62,9 @@ pub(super) fn run(args: &Args, request: &Request, folder: &Path) -> Result<()> {
         // Only a folder that is empty is removed.
         let _ = is_new.then(|| fs::remove_dir(folder));
     })?;
+    if !others.is_empty() {
+        complain("warning", format_args!("{}: they stay there, and are no part of this mix", told(folder, &others)));
+    }
     if report.clipped > 0 {
         let clipped = report.clipped;
         complain(
@@ -73,4 +80,25 @@ pub(super) fn run(args: &Args, request: &Request, folder: &Path) -> Result<()> {
         args.rate
     ));
     Ok(())
+}
+
+/// The files in a folder that look like stems, by their names, and are none of these.
+fn others(folder: &Path, stems: &[Stem], format: FileFormat) -> Vec<String> {
+    let own: Vec<String> = stems.iter().map(|stem| format!("{}.{}", stem.name, format.ending())).collect();
+    let is_stem = |name: &str| {
+        let Some((stem, "wav" | "flac")) = name.rsplit_once('.') else { return false };
+        let channel = stem.split('-').next().unwrap_or(stem);
+        stem == "space" || (channel.len() == 2 && channel.parse().is_ok_and(|number: u8| (1..=16).contains(&number)))
+    };
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut others: Vec<String> = names.filter(|name| is_stem(name) && !own.contains(name)).collect();
+    others.sort();
+    others
+}
+
+/// Says what other stems are in a folder.
+fn told(folder: &Path, others: &[String]) -> String {
+    let more = if others.len() > 1 { format!(" and {} more", others.len() - 1) } else { String::new() };
+    format!("{} has stems of another run ({}{more})", folder.display(), others[0])
 }

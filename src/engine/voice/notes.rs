@@ -157,7 +157,10 @@ impl Voice for SynthVoice {
         }
         self.slide(Some(instrument), note, note.is_legato);
         self.excite(instrument, note);
-        self.begin_hammer(instrument);
+        // In the frame of the first strike the modes have no pitch yet, and the hammer waits for it.
+        if !self.fresh {
+            self.begin_hammer(instrument);
+        }
         self.separation.iter_mut().for_each(|separation| separation.add(note, &self.strike, &self.bank));
         self.pitch.restart(self.controls.vibrato_rate, passed);
         self.clock.strike();

@@ -2,7 +2,7 @@
 //!
 //! A device has tuning programs, each with a pitch for every key, and each channel plays one of them: program 0, until registered
 //! parameters 3 and 4 choose another program and bank (MIDI Tuning, MIDI Manufacturers Association, 1999). An octave tuning sets the
-//! keys of its channels at once. Drums on channel 10 are not tuned.
+//! keys of its channels at once; as a dump it is a program. Requests of dumps change nothing. Drums on channel 10 are not tuned.
 
 use super::limits::MAX_EVENTS;
 use crate::engine::EventKind;
@@ -14,6 +14,9 @@ use std::collections::BTreeMap;
 /// Registered parameters, by their less significant bytes: tuning program and tuning bank.
 const PROGRAM: u8 = 3;
 const BANK: u8 = 4;
+
+/// Characters of the name in a dump.
+const NAME: usize = 16;
 
 /// A pitch for each key, in semitones.
 type Pitches = [f32; 128];
@@ -47,16 +50,14 @@ impl Message {
             (0x07, [bank, number, _, keys @ ..]) => {
                 Change::Keys { program: program(*bank, *number), keys: notes(keys) }
             }
-            (0x08, [high, middle, low, steps @ ..]) => {
-                let steps: &[u8; 12] = steps.try_into().ok()?;
-                let offsets = steps.map(|cents| (f32::from(cents) - 64.0) / 100.0);
-                Change::Octave { channels: channels([*high, *middle, *low]), offsets }
+            (0x05 | 0x06, [bank, number, rest @ ..]) => {
+                let steps = if *kind == 0x05 { 12 } else { 24 };
+                let offsets = octave(rest.get(NAME..NAME + steps)?)?;
+                let keys = (0..).zip(stretched(offsets)).collect();
+                Change::Keys { program: program(*bank, *number), keys }
             }
-            (0x09, [high, middle, low, steps @ ..]) => {
-                let steps: &[u8; 24] = steps.try_into().ok()?;
-                let fine = |step: usize| f32::from(steps[2 * step]) * 128.0 + f32::from(steps[2 * step + 1]);
-                let offsets = std::array::from_fn(|step| (fine(step) - 8192.0) / 8192.0);
-                Change::Octave { channels: channels([*high, *middle, *low]), offsets }
+            (0x08 | 0x09, [high, middle, low, steps @ ..]) => {
+                Change::Octave { channels: channels([*high, *middle, *low]), offsets: octave(steps)? }
             }
             _ => return None,
         };
@@ -64,9 +65,24 @@ impl Message {
     }
 }
 
+/// The semitones by which the steps of an octave are off: a byte of cents for each, or two of 1/8192 of a semitone.
+fn octave(steps: &[u8]) -> Option<[f32; 12]> {
+    if let Ok(cents) = <&[u8; 12]>::try_from(steps) {
+        return Some(cents.map(|cents| (f32::from(cents) - 64.0) / 100.0));
+    }
+    let steps: &[u8; 24] = steps.try_into().ok()?;
+    let fine = |step: usize| f32::from(steps[2 * step]) * 128.0 + f32::from(steps[2 * step + 1]);
+    Some(std::array::from_fn(|step| (fine(step) - 8192.0) / 8192.0))
+}
+
+/// The pitches of all keys by the offsets of the octave's steps.
+fn stretched(offsets: [f32; 12]) -> Pitches {
+    std::array::from_fn(|key| key as f32 + offsets[key % 12])
+}
+
 /// The pitches of a bulk dump, after its program: sixteen characters, three bytes for each key, and a checksum.
 fn dump(data: &[u8]) -> Option<Vec<(u8, f32)>> {
-    let pitches = data.get(16..16 + 3 * 128)?;
+    let pitches = data.get(NAME..NAME + 3 * 128)?;
     Some((0..).zip(pitches.chunks_exact(3)).filter_map(|(key, bytes)| Some((key, pitch(bytes)?))).collect())
 }
 
@@ -146,7 +162,7 @@ impl Device {
                     .try_for_each(|channel| self.tune(tick, channel, &pitches, *sounding))
             }
             Change::Octave { channels, offsets } => {
-                let pitches = std::array::from_fn(|key| key as f32 + offsets[key % 12]);
+                let pitches = stretched(*offsets);
                 (0..16)
                     .filter(|channel| channels >> channel & 1 == 1)
                     .try_for_each(|channel| self.tune(tick, channel, &pitches, *sounding))
@@ -233,6 +249,28 @@ mod tests {
         let choose = [control(5, RPN, 0), control(5, RPN_FINE, PROGRAM), control(5, DATA, 3), control(9, DATA, 0)];
         let events = spread(choose.to_vec(), &[(0, message)]).unwrap();
         assert_eq!(tuned(&events), [(5, 2, 69, 69.5, false), (9, 2, 69, 69.0, false)]);
+    }
+
+    #[test]
+    fn a_dump_of_an_octave_is_a_program() {
+        let choose = [
+            control(5, RPN, 0),
+            control(5, RPN_FINE, BANK),
+            control(5, DATA, 2),
+            control(5, RPN_FINE, PROGRAM),
+            control(5, DATA, 3),
+        ];
+        let coarse = [&[64; 4][..], &[50], &[64; 7]].concat();
+        let fine = [[0x40, 0].repeat(4), vec![0x20, 0], [0x40, 0].repeat(7)].concat();
+        for (kind, steps, offset) in [(5, coarse, -0.14), (6, fine, -0.5)] {
+            let whole = [&[0x7E, 0, 8, kind, 2, 3][..], b"sixteen letters.", &steps, &[0, 0xF7]].concat();
+            let events = spread(choose.to_vec(), &[(0, Message::read(&whole).unwrap())]).unwrap();
+            let tuned = tuned(&events);
+            // Every E, from the choice of the program on.
+            assert_eq!((tuned.len(), tuned[0], tuned[10].2), (11, (5, 2, 4, 4.0 + offset, false), 124), "{kind}");
+            let short = [&whole[..whole.len() - 3], &[0xF7]].concat();
+            assert_eq!(Message::read(&short), None, "{kind}: a dump without its last step");
+        }
     }
 
     #[test]

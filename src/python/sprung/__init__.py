@@ -184,11 +184,17 @@ def render(
     song: str | os.PathLike[str] | None = None,
     set: Mapping[str, Any] | None = None,
     channel: Mapping[int, PresetLike] | None = None,
+    from_: float | str | None = None,
+    to: float | str | None = None,
+    pattern: int | None = None,
     **options: Any,
 ) -> Sound:
     """Renders notes, or a MIDI file, and gives its samples as 32-bit floats.
 
-    The options are those of ``sprung render``: ``velocity``, ``length``, ``tail``, ``rate``, ``seed``, ``mono``,
+    ``from_`` and ``to`` are ``--from`` and ``--to``: a part of a song, in seconds (``90``) or bars (``"bar9.3"``); ``from`` is a
+    word of Python's own, so it has an underscore. ``pattern`` is the pattern of a MIDI file of type 2, from 1.
+
+    The other options are those of ``sprung render``: ``velocity``, ``length``, ``tail``, ``rate``, ``seed``, ``mono``,
     ``gain_db``, ``mix_gain_db``, ``normalize``, ``scale``, ``keymap``, ``input``, ``programs``, ``lenient``,
     ``tempo``, ``transpose``, ``solo``, ``mute``.
     """
@@ -198,8 +204,7 @@ def render(
             given["preset"] = _name(preset, stack)
         if notes is not None:
             given["note"] = notes
-        if song is not None:
-            given["song"] = song
+        given.update({"song": song, "from": from_, "to": to, "pattern": pattern})
         pairs = [(name, _text(value)) for name, value in given.items() if value is not None]
         pairs += [("set", f"{name}={_text(value)}") for name, value in (set or {}).items()]
         pairs += [("channel", f"{number}={_name(one, stack)}") for number, one in (channel or {}).items()]

@@ -54,6 +54,18 @@ def test_a_song_has_the_bits_of_the_command(tmp_path: Path) -> None:
     assert sound.rate == 8000 and sound.tobytes() == floats(out).tobytes()
 
 
+def test_a_part_of_a_song_has_the_bits_of_the_command(tmp_path: Path) -> None:
+    song, out = PROJECT / "assets/midi/groove.mid", tmp_path / "out.wav"
+    rest = ["--rate", "8000", "--tail", "none", "--bits", "32f", "-o", str(out)]
+    command("render", str(song), "--from", "bar2", "--to", "4.5", *rest)
+    sound = sprung.render(song=song, from_="bar2", to=4.5, rate=8000, tail="none")
+    assert 0 < len(sound) < 4.5 * 8000 and sound.tobytes() == floats(out).tobytes()
+    with pytest.raises(sprung.Error, match="from: ‘9x’ is not a number: expected 0 to 86400 s, or a bar"):
+        sprung.render(song=song, from_="9x")
+    with pytest.raises(sprung.Error, match="only files of type 2 have patterns"):
+        sprung.render(song=song, pattern=1)
+
+
 def test_options_take_what_python_has() -> None:
     sound = sprung.render("Kick", np.int64(36), velocity=np.int32(90), length=0.05, tail=0, mono=True, rate=16_000)
     assert sound.shape == (800, 1)
