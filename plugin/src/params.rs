@@ -288,10 +288,11 @@ unsafe impl Params for SprungParams {
             read.complaints
                 .iter()
                 .for_each(|complaint| nice_warn!("a state was not understood as a whole: {complaint}"));
-            match fields.contains_key(state::EFFECT_FIELD) {
-                true => self.load_as_it_is(read),
-                false => self.load(read),
-            };
+            if fields.contains_key(state::EFFECT_FIELD) {
+                self.load_as_it_is(read);
+            } else {
+                self.load(read);
+            }
             self.locked().loads += 1;
         }
     }

@@ -8,9 +8,9 @@
 #![allow(unsafe_code, reason = "the wrapper takes parameters as pointers")]
 
 use crate::editor::SprungEditor;
-use crate::live::{EVENT_CAPACITY, Live, MAX_VOICES};
+use crate::live::Live;
 use crate::params::SprungParams;
-use crate::plugin::add_pages;
+use crate::plugin::{Sprung, add_pages};
 use crate::state;
 use nice_plug::prelude::*;
 use nice_plug_core::params::internals::ParamPtr;
@@ -126,14 +126,14 @@ const fn layout(name: &'static str, channels: u32) -> AudioIOLayout {
 
 impl Plugin for Resonator {
     const NAME: &'static str = "Sprung Resonator";
-    const VENDOR: &'static str = "The Sprung authors";
-    const URL: &'static str = "";
-    const EMAIL: &'static str = "";
-    const VERSION: &'static str = env!("CARGO_PKG_VERSION");
+    const VENDOR: &'static str = Sprung::VENDOR;
+    const URL: &'static str = Sprung::URL;
+    const EMAIL: &'static str = Sprung::EMAIL;
+    const VERSION: &'static str = Sprung::VERSION;
     const AUDIO_IO_LAYOUTS: &'static [AudioIOLayout] = &[layout("Stereo", 2), layout("Mono", 1)];
-    const MIDI_INPUT: MidiConfig = MidiConfig::MidiCCs;
-    const SAMPLE_ACCURATE_AUTOMATION: bool = true;
-    const INPUT_EVENT_CAPACITY: usize = EVENT_CAPACITY;
+    const MIDI_INPUT: MidiConfig = Sprung::MIDI_INPUT;
+    const SAMPLE_ACCURATE_AUTOMATION: bool = Sprung::SAMPLE_ACCURATE_AUTOMATION;
+    const INPUT_EVENT_CAPACITY: usize = Sprung::INPUT_EVENT_CAPACITY;
 
     type Editor = SprungEditor;
     type SysExMessage = ();
@@ -236,8 +236,7 @@ impl ClapPlugin for Resonator {
     const CLAP_SUPPORT_URL: Option<&'static str> = None;
     const CLAP_FEATURES: &'static [ClapFeature] =
         &[ClapFeature::AudioEffect, ClapFeature::Filter, ClapFeature::Stereo, ClapFeature::Mono];
-    const CLAP_POLY_MODULATION_CONFIG: Option<PolyModulationConfig> =
-        Some(PolyModulationConfig { max_voice_capacity: MAX_VOICES, supports_overlapping_voices: true });
+    const CLAP_POLY_MODULATION_CONFIG: Option<PolyModulationConfig> = Sprung::CLAP_POLY_MODULATION_CONFIG;
 
     fn remote_controls(&self, context: &mut impl RemoteControlsContext) {
         context.add_section("Resonator", |section| {

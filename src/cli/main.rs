@@ -29,6 +29,7 @@ mod view;
 use clap::{CommandFactory, Parser, Subcommand};
 use interrupt::INTERRUPTED;
 use sprung::Result;
+use sprung::io::sound_file::DECODER;
 use sprung::request::quantity;
 use std::io::Write;
 use std::process::ExitCode;
@@ -116,6 +117,13 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    // What makes a decoder panic is told as an error of its file.
+    let show = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if std::thread::current().name() != Some(DECODER) {
+            show(panic);
+        }
+    }));
     match completion::answer(Cli::command) {
         Ok(true) => return finish(checked(std::io::stdout().flush())),
         Ok(false) => {}

@@ -79,10 +79,14 @@ impl Bank {
         }
     }
 
-    /// See [`ModeBank::set_touched`]; `push` is that of a mallet if none is given. With the original formulas, nothing touches.
-    pub(crate) fn set_touched(&mut self, m: usize, push: Option<f64>, weight: f64) -> [f64; 2] {
-        let Self::Exact(bank) = self else { return [0.0; 2] };
-        bank.set_touched(m, push.unwrap_or(bank.push(m)), weight)
+    /// See [`ModeBank::push`]. With the original formulas, nothing touches.
+    pub(crate) fn push(&self, m: usize) -> f64 {
+        if let Self::Exact(bank) = self { bank.push(m) } else { 0.0 }
+    }
+
+    /// See [`ModeBank::set_touched`].
+    pub(crate) fn set_touched(&mut self, m: usize, push: f64, weight: f64) -> [f64; 2] {
+        if let Self::Exact(bank) = self { bank.set_touched(m, push, weight) } else { [0.0; 2] }
     }
 
     /// See [`ModeBank::given`].

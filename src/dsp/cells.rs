@@ -185,27 +185,16 @@ impl Cells {
         }
     }
 
-    /// Like [`super::ModeBank::set_touched`], for all modes and a hammer, whose impulse makes them as loud as a push does: `weight`
-    /// tells that of a mode by its number. Returns the sums.
-    pub(crate) fn set_hammered(&mut self, weight: impl Fn(usize) -> f64) -> [f64; 2] {
+    /// Like [`super::ModeBank::set_touched`], for the modes of the first cells. `touch` tells push and weight of a mode by its number
+    /// and by the push of a mallet. Returns the sums.
+    pub(crate) fn set_touched(&mut self, cells: usize, touch: impl Fn(usize, f64) -> [f64; 2]) -> [f64; 2] {
         let mut total = [0.0; 2];
-        for (cell, Cell { bank, .. }) in self.iter_mut().enumerate() {
+        for (cell, Cell { bank, .. }) in self.iter_mut().take(cells).enumerate() {
             for m in 0..bank.len() {
-                let own = bank.set_touched(m, None, weight(cell * MAX_MODES + m));
+                let [push, weight] = touch(cell * MAX_MODES + m, bank.push(m));
+                let own = bank.set_touched(m, push, weight);
                 total = [total[0] + own[0], total[1] + own[1]];
             }
-        }
-        total
-    }
-
-    /// Like [`super::ModeBank::set_touched`], for the first [`MAX_MODES`] modes. `touch` tells push and weight of a mode by its number.
-    /// Returns the sum of what the modes give way.
-    pub(crate) fn set_touched(&mut self, touch: impl Fn(usize) -> [f64; 2]) -> f64 {
-        let Some(Cell { bank, .. }) = self.iter_mut().next() else { return 0.0 };
-        let mut total = 0.0;
-        for m in 0..bank.len() {
-            let [push, weight] = touch(m);
-            total += bank.set_touched(m, Some(push), weight).iter().sum::<f64>();
         }
         total
     }
@@ -213,9 +202,10 @@ impl Cells {
     /// As [`super::ModeBank::render_played`]. The drive acts on all cells, and so does a hammer; other players act only on the first.
     pub(crate) fn render(&mut self, drive: Option<&Drive>, player: Option<Player>, frames: usize) -> [&[f32]; 2] {
         let frames = frames.min(CONTROL_FRAMES);
-        let is_whole = self.cells[1].is_none();
         let mut player = player;
-        if let Some(player @ (Player::Hammer(_) | Player::Forces(_))) = player.as_mut().filter(|_| !is_whole) {
+        if self.cells[1].is_some()
+            && let Some(player @ (Player::Hammer(_) | Player::Forces(_))) = &mut player
+        {
             self.render_hammered(drive.unwrap_or(&Drive::NONE), player, frames);
             return self.sum.each_ref().map(|side| &side[..frames]);
         }

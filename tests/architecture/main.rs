@@ -51,7 +51,8 @@ const OUTSIDE: &[Row] = &[
     ("jack", &["realtime"]),
     ("midir", &["realtime"]),
     ("rtrb", &["realtime"]),
-    ("std::thread", &["realtime"]),
+    // Decoders that panic do so on a thread of their own.
+    ("std::thread", &["io", "realtime"]),
 ];
 
 /// Libraries that the plugin must not use, because it has no signal processing of its own.

@@ -38,6 +38,15 @@ fn a_strike_is_taken_apart_into_its_modes() {
 }
 
 #[test]
+fn what_makes_a_decoder_panic_is_an_error_of_its_file() {
+    let sandbox = Sandbox::new();
+    sandbox.write("a.ogg", include_bytes!("../sounds/wrong-codebook.ogg"));
+    let output = sandbox.sprung("analyze a.ogg").assert().code(1).get_output().clone();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(told, "sprung: error: a.ogg: no decoder can read this, so it is damaged: expected Ogg\n");
+}
+
+#[test]
 fn a_rate_that_no_sound_has_is_refused_at_once() {
     let sandbox = Sandbox::new();
     sandbox.write("a.wav", wav(&strike(0.5), 44_100));

@@ -1,6 +1,6 @@
 //! Breath and held noise in whole notes: pitch at every key, loudness and colour by pressure, beginnings, ends and slurs.
 
-use crate::events::{event, off, on};
+use crate::events::{event, off, on, played};
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::Param;
 use sprung::patch::routes::Source;
@@ -31,11 +31,7 @@ fn tube(step: usize) -> Patch {
 }
 
 fn render(patch: &Patch, rate: f64, events: &[Event], frames: usize) -> Vec<f32> {
-    let mut synth = Synth::new(rate, 1);
-    synth.set_patch(patch);
-    let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
-    synth.process(events, &mut left, &mut right);
-    left
+    played(patch, (rate, 1), events, frames)
 }
 
 /// RMS about the mean: a steady flow leaves a little steady pressure.

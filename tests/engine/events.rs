@@ -1,6 +1,16 @@
-//! Events on the first channel, in a short form for tests.
+//! Events on the first channel, in a short form for tests, and what a synth plays of them.
 
-use sprung::engine::{Event, EventKind, NoteId};
+use sprung::engine::{Event, EventKind, NoteId, Synth};
+use sprung::patch::Patch;
+
+/// The left side of some frames of a patch, at a rate and with a seed.
+pub(crate) fn played(patch: &Patch, (rate, seed): (f64, u64), events: &[Event], frames: usize) -> Vec<f32> {
+    let mut synth = Synth::new(rate, seed);
+    synth.set_patch(patch);
+    let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
+    synth.process(events, &mut left, &mut right);
+    left
+}
 
 pub(crate) fn event(frame: u32, kind: EventKind) -> Event {
     Event { frame, channel: 0, kind }

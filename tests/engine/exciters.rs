@@ -39,12 +39,12 @@ fn driven(patch: &Patch, seed: u64, events: &[Event], input: &[f32], frames: usi
     left
 }
 
-fn rms(sound: &[f32]) -> f64 {
+pub(crate) fn rms(sound: &[f32]) -> f64 {
     (sound.iter().map(|sample| f64::from(sample * sample)).sum::<f64>() / sound.len() as f64).sqrt()
 }
 
 /// Brightness: RMS of the differences between successive samples, relative to the RMS of the samples.
-fn brightness(sound: &[f32]) -> f64 {
+pub(crate) fn brightness(sound: &[f32]) -> f64 {
     let steps: Vec<f32> = sound.windows(2).map(|pair| pair[1] - pair[0]).collect();
     rms(&steps) / rms(sound)
 }

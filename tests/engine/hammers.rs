@@ -1,6 +1,7 @@
 //! What touches a body in whole notes: how hammers follow velocity and what they meet, and what rattles.
 
-use crate::events::off;
+use crate::events::{off, played};
+use crate::exciters::{brightness, rms};
 use sprung::engine::{Event, Synth};
 use sprung::params::Param;
 use sprung::patch::{Mode, ModeTable, Patch};
@@ -20,21 +21,7 @@ fn string(count: u16) -> Patch {
 }
 
 fn render(patch: &Patch, events: &[Event], frames: usize) -> Vec<f32> {
-    let mut synth = Synth::new(RATE, 1);
-    synth.set_patch(patch);
-    let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
-    synth.process(events, &mut left, &mut right);
-    left
-}
-
-fn rms(sound: &[f32]) -> f64 {
-    let squares = sound.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>();
-    (squares / sound.len() as f64).sqrt()
-}
-
-/// RMS of the differences between successive samples, relative to that of the samples.
-fn brightness(sound: &[f32]) -> f64 {
-    rms(&sound.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<_>>()) / rms(sound)
+    played(patch, (RATE, 1), events, frames)
 }
 
 /// A felt is the harder, the deeper it is pressed; a pulse of fixed length only grows.

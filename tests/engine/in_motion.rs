@@ -1,7 +1,7 @@
 //! Tension, bloom and touch: pitch and spectrum that follow the energy, and a finger that damps modes by their shapes.
 
 use crate::damped_sine::fit;
-use crate::events::{event, on};
+use crate::events::{event, on, played};
 use sprung::analysis::spectrum::spectrum;
 use sprung::dsp::CONTROL_FRAMES;
 use sprung::engine::{Event, EventKind, Synth};
@@ -14,12 +14,7 @@ use std::f64::consts::TAU;
 const RATE: f64 = 48_000.0;
 
 fn render(patch: &Patch, events: &[Event], seconds: f64) -> Vec<f32> {
-    let frames = (seconds * RATE) as usize;
-    let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
-    let mut synth = Synth::new(RATE, 1);
-    synth.set_patch(patch);
-    synth.process(events, &mut left, &mut right);
-    left
+    played(patch, (RATE, 1), events, (seconds * RATE) as usize)
 }
 
 /// A mass that is struck within one sample, at full level.

@@ -1,6 +1,6 @@
 //! Audible effects of routes on a note: every source, and every kind of destination.
 
-use crate::events::{event, off};
+use crate::events::{event, off, played};
 use sprung::engine::{Event, EventKind, Expression, NoteId, Notes, Synth};
 use sprung::params::{PARAMS, Param, Param::*};
 use sprung::patch::routes::{Response, Route, Source, amount_param};
@@ -25,11 +25,7 @@ fn patch(routes: &[(Source, Param, f32)]) -> Patch {
 }
 
 fn render(patch: &Patch, seed: u64, events: &[Event], frames: usize) -> Vec<f32> {
-    let mut synth = Synth::new(RATE, seed);
-    synth.set_patch(patch);
-    let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
-    synth.process(events, &mut left, &mut right);
-    left
+    played(patch, (RATE, seed), events, frames)
 }
 
 /// Peak of 100 ms, starting at a time in seconds.

@@ -13,16 +13,18 @@ use std::sync::OnceLock;
 /// Sample rate, frequency, decay in frames, amplitude, frames, sweep.
 type Case = (f32, f32, f32, f32, usize, f32);
 
-/// The listing as a program. Compiled only once, because tests run in parallel and a file cannot run while it is
-/// written.
+/// The listing as a program, compiled beside its place and then moved there: tests in other processes may run the one that is there,
+/// and a file cannot be written while it runs.
 fn program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {
         let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("harmonic_oscillator");
+        let new = program.with_extension(std::process::id().to_string());
         let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/engine/seed/harmonic_oscillator.cpp");
         // No fused multiplication: the listing's operations are done one by one, as on the machines of its time.
-        let compiler = Command::new("c++").args(["-O2", "-ffp-contract=off", source, "-o"]).arg(&program).status();
+        let compiler = Command::new("c++").args(["-O2", "-ffp-contract=off", source, "-o"]).arg(&new).status();
         assert!(compiler.expect("c++, which `cargo xtask setup` installs").success(), "the listing does not compile");
+        std::fs::rename(&new, &program).unwrap();
         program
     })
 }

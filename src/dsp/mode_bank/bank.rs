@@ -219,12 +219,11 @@ impl ModeBank {
             return [0.0, if is_rendered { 0.0 } else { weight / (angle * angle) }];
         }
         // The integral of e^(st) over a frame, (e^s − 1)/s, with s = ln r + iθ and e^s = 1 − α + iβ.
-        let (turned, [growth, norm]) = (
-            [-f64::from(self.modes.alpha.0[m]), f64::from(self.modes.beta.0[m])],
-            [self.ln_radius[m], self.ln_radius[m] * self.ln_radius[m] + angle * angle],
-        );
-        let along = (turned[0] * growth + turned[1] * angle) / norm;
-        let across = (turned[1] * growth - turned[0] * angle) / norm;
+        let (real, imaginary) = (-f64::from(self.modes.alpha.0[m]), f64::from(self.modes.beta.0[m]));
+        let growth = self.ln_radius[m];
+        let norm = growth * growth + angle * angle;
+        let along = (real * growth + imaginary * angle) / norm;
+        let across = (imaginary * growth - real * angle) / norm;
         let Modes { take, take_y, give, .. } = &mut self.modes;
         (take.0[m], take_y.0[m]) = ((push * across) as f32, (push * along) as f32);
         give.0[m] = (weight / (push * angle)) as f32;

@@ -1,9 +1,10 @@
 //! Tests of a hammer on a bank: its energy, and pianos beside a converged solution of the same equations.
 
+use super::tests::Stream;
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::exciter::{Drive, Hammer, HammerLaw, Player, Rattle, RattleKind, RattleLaw};
 use crate::dsp::mode_bank::{ExcitationGains, ExcitationRows, MAX_MODES, ModeBank, ModeSetup};
-use crate::dsp::random::{key, uniform};
+use crate::dsp::random::key;
 use std::f64::consts::{PI, TAU};
 
 const RATE: f64 = 48_000.0;
@@ -27,6 +28,12 @@ fn struck(partials: &[Partial], push: f32, law: HammerLaw, rate: f64) -> (ModeBa
     (bank, Hammer::new(HammerLaw { compliance, stillness, ..law }))
 }
 
+/// The energy of a body that a push of 1 makes as loud as `push`.
+fn of_body(bank: &ModeBank, partials: &[Partial], push: f32) -> f64 {
+    let of = |(m, (.., weight)): (usize, &Partial)| f64::from(bank.mass(m).1) * weight;
+    0.5 * partials.iter().enumerate().map(of).sum::<f64>() / f64::from(push * push)
+}
+
 /// The forces of some frames.
 fn strike(bank: &mut ModeBank, hammer: &mut Hammer, frames: usize) -> Vec<f64> {
     let mut forces = vec![];
@@ -46,12 +53,8 @@ fn strike(bank: &mut ModeBank, hammer: &mut Hammer, frames: usize) -> Vec<f64> {
 fn a_hammer_and_its_body_gain_nothing() {
     let mut touched = 0;
     for seed in 0..SETTINGS {
-        let mut count = 0;
-        let mut next = || {
-            count += 1;
-            f64::from(uniform(key(81, seed), count)) * 0.5 + 0.5
-        };
-        let mut spread = |decades: f64| libm::pow(10.0, decades * (next() - 0.5));
+        let mut stream = Stream(key(81, seed), 0);
+        let mut spread = |decades| stream.spread(decades);
         let rate = 80_000.0 * spread(2.0);
         let len = 1 + (MAX_MODES as f64 * spread(2.0) * 0.1) as usize;
         let partials: Vec<Partial> =
@@ -67,11 +70,7 @@ fn a_hammer_and_its_body_gain_nothing() {
         };
         let push = spread(4.0) as f32;
         let (mut bank, mut hammer) = struck(&partials, push, law, rate);
-        let energy = |bank: &ModeBank, hammer: &Hammer| -> f64 {
-            let modes = partials.iter().enumerate();
-            let of = |(m, (.., weight)): (usize, &Partial)| f64::from(bank.mass(m).1) * weight;
-            0.5 * modes.map(of).sum::<f64>() / f64::from(push * push) + hammer.energy()
-        };
+        let energy = |bank: &ModeBank, hammer: &Hammer| of_body(bank, &partials, push) + hammer.energy();
         let first = energy(&bank, &hammer);
         for i in 0..200 {
             if i % CONTROL_FRAMES == 0 {
@@ -91,12 +90,8 @@ fn a_hammer_and_its_body_gain_nothing() {
 fn a_rattle_and_its_body_gain_nothing() {
     let (mut hits, mut kept) = (0, 0.0);
     for seed in 0..SETTINGS {
-        let mut count = 0;
-        let mut next = || {
-            count += 1;
-            f64::from(uniform(key(82, seed), count)) * 0.5 + 0.5
-        };
-        let mut spread = |decades: f64| libm::pow(10.0, decades * (next() - 0.5));
+        let mut stream = Stream(key(82, seed), 0);
+        let mut spread = |decades| stream.spread(decades);
         let rate = 80_000.0 * spread(2.0);
         let len = 1 + (MAX_MODES as f64 * spread(2.0) * 0.1) as usize;
         let partials: Vec<Partial> =
@@ -122,10 +117,7 @@ fn a_rattle_and_its_body_gain_nothing() {
         };
         let law = RattleLaw { kind, speed: speed * spread(2.0), contact: 30.0 * spread(5.0), compliance };
         let mut rattle = Rattle::new(law);
-        let body = |bank: &ModeBank| -> f64 {
-            let of = |(m, (.., weight)): (usize, &Partial)| f64::from(bank.mass(m).1) * weight;
-            0.5 * partials.iter().enumerate().map(of).sum::<f64>() / f64::from(push * push)
-        };
+        let body = |bank: &ModeBank| of_body(bank, &partials, push);
         let mut first = None;
         for i in 0..200 {
             if i % CONTROL_FRAMES == 0 {

@@ -9,12 +9,17 @@ const RATE: f64 = 48_000.0;
 const SETTINGS: u64 = 10_000;
 
 /// A sequence of numbers from 0 to 1.
-struct Stream(u64, u64);
+pub(super) struct Stream(pub(super) u64, pub(super) u64);
 
 impl Stream {
     fn next(&mut self) -> f64 {
         self.1 += 1;
         f64::from(uniform(self.0, self.1)) * 0.5 + 0.5
+    }
+
+    /// A number around 1, evenly over so many decades.
+    pub(super) fn spread(&mut self, decades: f64) -> f64 {
+        libm::pow(10.0, decades * (self.next() - 0.5))
     }
 }
 

@@ -64,7 +64,7 @@ impl Hammering {
             return;
         }
         let weights = strengths(values.modes().as_slice(), frequency, PLACE);
-        let [compliance, stillness] = bank.set_hammered(|m| weights[m]);
+        let [compliance, stillness] = bank.set_touched(MAX_CELLS, |m, push| [push, weights[m]]);
         self.hammer = Hammer::new(HammerLaw { compliance, stillness, ..self.law });
     }
 

@@ -58,8 +58,10 @@ impl Rattling {
             *self = Self::OFF;
         } else if let (None, Some(values)) = (&self.rattle, values) {
             self.rattle = self.begin(values, full, note, bank);
-            // A body that no strike moves hits nothing.
-            self.kind = if self.rattle.is_some() { self.kind } else { Kind::Off };
+            if self.rattle.is_none() {
+                // A body that no strike moves hits nothing.
+                *self = Self::OFF;
+            }
         }
     }
 
@@ -76,11 +78,11 @@ impl Rattling {
         let weights = strengths(modes, frequency, place);
         let [levels, ..] = values.tilted_levels();
         // A mode's level is that of an impulse at its antinode.
-        let touch = |m: usize| {
+        let touch = |m: usize, _| {
             let struck = f64::from(modes[m].strike).max(HEARD_ONLY);
             [levels[m] * sin(PI * place * f64::from(modes[m].ratio)), weights[m] * struck]
         };
-        let compliance = bank.set_touched(touch);
+        let compliance = bank.set_touched(1, touch).iter().sum();
         // Speed and swing of the point after a full strike, from modes of any phases.
         let (mut speeds, mut swings) = (0.0, 0.0);
         for (m, mode) in modes.iter().enumerate().take(MAX_MODES) {

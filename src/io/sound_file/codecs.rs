@@ -4,6 +4,7 @@ use super::recording::{Recording, check_layout};
 use crate::error::{Error, Result};
 use std::fs::File;
 use std::io::{BufReader, Cursor, ErrorKind, Read, Seek, SeekFrom};
+use std::thread;
 use symphonia::core::codecs::audio::AudioDecoderOptions;
 use symphonia::core::errors::Error as Fault;
 use symphonia::core::formats::probe::Hint;
@@ -14,8 +15,21 @@ use symphonia::core::meta::MetadataOptions;
 /// Length in bytes of the longest frame of MPEG audio, 320 kbit/s at 8 kHz.
 const MOST_FRAME: usize = 2881;
 
+/// Name of the thread that decodes. Symphonia panics at some damaged files; [`read`] makes an error of it, and whoever shows panics
+/// can leave it out.
+pub const DECODER: &str = "sound decoder";
+
 /// Reads a file whose next bytes are those of `format`.
 pub(super) fn read(file: File, name: &str, format: &str) -> Result<Recording> {
+    thread::scope(|scope| {
+        let decoder =
+            thread::Builder::new().name(DECODER.to_owned()).spawn_scoped(scope, || decode(file, name, format));
+        let damaged = || Error::format(name, format!("no decoder can read this, so it is damaged: expected {format}"));
+        decoder.map_err(|source| Error::io(name, source))?.join().unwrap_or_else(|_| Err(damaged()))
+    })
+}
+
+fn decode(file: File, name: &str, format: &str) -> Result<Recording> {
     let wrong = |fault: Fault| match fault {
         Fault::IoError(source) if source.kind() != ErrorKind::UnexpectedEof => Error::io(name, source),
         Fault::IoError(_) => Error::format(name, format!("the file ends within its header: expected a whole {format}")),

@@ -5,6 +5,7 @@ mod recording;
 mod resample;
 mod wav;
 
+pub use codecs::DECODER;
 pub use recording::{MOST_CHANNELS, Recording};
 pub use resample::resampled;
 

@@ -108,6 +108,10 @@ fn what_is_no_sound_is_refused_with_what_would_be_right() {
         (wav(0x55, 1, 8), "x: samples are coded as MP3: expected PCM or floats"),
         (wav(9, 1, 8), "x: samples are coded as format 9: expected PCM or floats"),
         (opus, "x: this is Opus: expected WAV, AIFF, FLAC, Ogg Vorbis or MP3"),
+        (
+            include_bytes!("../../../tests/sounds/wrong-codebook.ogg").to_vec(),
+            "x: no decoder can read this, so it is damaged: expected Ogg",
+        ),
         (wav(1, 0, 16), "x: it has 0 channels: expected 1 to 64"),
         (
             wav(3, 1, 16),
