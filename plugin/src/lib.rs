@@ -29,6 +29,7 @@ mod link;
 mod live;
 mod loaded;
 mod lock;
+mod mts_esp;
 mod multi;
 mod params;
 mod plugin;

@@ -4,6 +4,7 @@ use crate::chord::Chord;
 use crate::events::translate;
 use crate::link::Touch;
 use crate::loaded::Loaded;
+use crate::mts_esp;
 use crate::params::{Look, SprungParams};
 use crate::tail::Tail;
 use nice_plug::prelude::*;
@@ -11,7 +12,7 @@ use nice_plug_core::midi::{Channel, Key, VoiceID};
 use nice_plug_egui::RepaintNotifier;
 use rtrb::Consumer;
 use sprung::engine::synth::Outputs;
-use sprung::engine::{Event, EventKind, Snapshot, Synth, TelemetryWriter};
+use sprung::engine::{Event, EventKind, NoteId, Snapshot, Synth, TelemetryWriter};
 use sprung::params::{Change, PARAM_COUNT, PARAMS, Param};
 use sprung::sound::kit::KEYS;
 use sprung::units::mono_from_stereo;
@@ -45,6 +46,8 @@ pub(crate) struct Live {
     tail: Tail,
     /// What the effect holds while nobody plays; the instrument has none.
     chord: Option<Chord>,
+    /// The frequencies of keys that a master of MTS-ESP says, if its library is there.
+    tuning: Option<mts_esp::Client>,
     /// Number of the synth's ended notes that have been reported to the host.
     reported: usize,
     /// Events that the wrapper delivered too early, with the part of the block before their own.
@@ -78,6 +81,7 @@ impl Live {
             voices: 0,
             tail: Tail::new(offline),
             chord: None,
+            tuning: mts_esp::Client::register(),
             reported: 0,
             early: Vec::with_capacity(EVENT_CAPACITY),
             stereo: [[0.0; MONO_FRAMES]; 2],
@@ -152,6 +156,17 @@ impl Live {
         }
     }
 
+    /// Applies the frequencies that a master of MTS-ESP says.
+    fn follow_tuning(&mut self) {
+        self.tuning.iter_mut().for_each(mts_esp::Client::look);
+        let a4 = self.synth.values().get(Param::Tuning).into();
+        for key in 0..KEYS as u8 {
+            if let Some(kind) = self.tuning.as_mut().and_then(|tuning| tuning.change(key, a4)) {
+                self.handle(0, kind);
+            }
+        }
+    }
+
     /// Handles an event. A chord of the effect ends before a note that is played, and begins after the last one.
     fn handle(&mut self, channel: u8, kind: EventKind) {
         if let Some(chord) = &mut self.chord
@@ -203,6 +218,7 @@ impl Live {
         let start = self.telemetry.is_watched().then(Instant::now);
         self.follow(params);
         self.follow_tempo(context.transport().tempo);
+        self.follow_tuning();
         self.follow_touches();
         self.follow_chord();
         // A change of the play mode may have ended notes that were waiting for a key.
@@ -247,6 +263,7 @@ impl Live {
     #[cfg(feature = "standalone")]
     pub(crate) fn play(&mut self, params: &SprungParams, events: &[Event], left: &mut [f32], right: &mut [f32]) {
         self.follow(params);
+        self.follow_tuning();
         self.follow_touches();
         for event in events {
             self.telemetry.note_event(event);
@@ -278,7 +295,12 @@ impl Live {
         context: &mut impl ProcessContext<P>,
     ) {
         if let Some((channel, kind)) = translate(event, context.plugin_api()) {
-            self.handle(channel, kind);
+            match (kind, &self.tuning) {
+                (EventKind::NoteOn { key, id, .. }, Some(tuning)) if tuning.leaves_out(channel, key) => {
+                    report_end(frame, (channel, key, id), context);
+                }
+                _ => self.handle(channel, kind),
+            }
             self.report_ended(frame, context);
         }
     }
@@ -336,17 +358,22 @@ impl Live {
             if note.id.is_some_and(Chord::is_own) {
                 continue;
             }
-            let voice_id = note.id.map_or(VoiceID::Wildcard, |id| VoiceID::ID(id.number()));
-            // An error means that the host accepts no events, or no more of them: it is ignored.
-            let _ = context.try_send_event(NoteEvent::VoiceTerminated {
-                timing: frame as u32,
-                voice_id,
-                channel: Channel::Number(note.channel),
-                key: Key::Number(note.key),
-            });
+            report_end(frame, (note.channel, note.key, note.id), context);
         }
         self.reported = ended.len();
     }
+}
+
+/// Reports to the host that a note has ended.
+fn report_end<P: Plugin<SysExMessage = ()>>(
+    frame: usize,
+    (channel, key, id): (u8, u8, Option<NoteId>),
+    context: &mut impl ProcessContext<P>,
+) {
+    let voice_id = id.map_or(VoiceID::Wildcard, |id| VoiceID::ID(id.number()));
+    let (channel, key) = (Channel::Number(channel), Key::Number(key));
+    // An error means that the host accepts no events, or no more of them: it is ignored.
+    let _ = context.try_send_event(NoteEvent::VoiceTerminated { timing: frame as u32, voice_id, channel, key });
 }
 
 /// Reports the sound to the window, if one is watching.

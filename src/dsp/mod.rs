@@ -19,6 +19,7 @@ pub mod real;
 pub(crate) mod series;
 #[allow(unsafe_code)]
 pub mod simd;
+pub(crate) mod smoothed;
 pub mod space;
 pub mod true_peak;
 

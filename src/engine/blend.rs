@@ -1,32 +1,20 @@
 //! The balance between the sound that goes into an effect and the sound that comes out of it.
 
-use crate::dsp::ramp::Ramp;
-
-/// How long the balance takes to another value, in seconds.
-const SECONDS: f64 = 0.02;
+use crate::dsp::smoothed::Smoothed;
 
 /// A share of the effect's sound in the output, 0–1; the rest is the sound as it came in. Real-time safe.
 #[derive(Clone, Copy, Debug)]
-pub struct Blend {
-    share: Ramp,
-    target: f32,
-    frames: u32,
-}
+pub struct Blend(Smoothed);
 
 impl Blend {
     /// A balance at rest, for a sample rate in Hz.
     pub fn new(sample_rate: f64, wet: f32) -> Self {
-        let target = within(wet);
-        Self { share: Ramp::at_rest(target), target, frames: libm::round(SECONDS * sample_rate) as u32 }
+        Self(Smoothed::new(within(wet), sample_rate))
     }
 
     /// Moves to another share within 20 ms. A share beyond 0–1 counts as the nearest, NaN as 0.
     pub fn aim(&mut self, wet: f32) {
-        let target = within(wet);
-        if target != self.target {
-            self.target = target;
-            self.share.set(target, self.frames);
-        }
+        self.0.set(within(wet));
     }
 
     /// Mixes the next frames, as many as the shortest slice has, and overwrites `wet`, channel by channel. At a share of 0 the output
@@ -35,7 +23,7 @@ impl Blend {
         let frames = wet.first().map_or(0, |channel| channel.len());
         for (dry, wet) in dry.into_iter().zip(wet) {
             for (frame, (dry, wet)) in dry.iter().zip(wet.iter_mut()).enumerate() {
-                let share = self.share.after(frame as u32);
+                let share = self.0.after(frame);
                 *wet = match share {
                     0.0 => *dry,
                     1.0 => *wet,
@@ -43,7 +31,7 @@ impl Blend {
                 };
             }
         }
-        self.share.advance(frames as u32);
+        self.0.advance(frames);
     }
 }
 

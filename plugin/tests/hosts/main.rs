@@ -51,6 +51,8 @@ mod state;
 #[cfg(target_os = "linux")]
 mod storm;
 #[cfg(target_os = "linux")]
+mod tuning;
+#[cfg(target_os = "linux")]
 mod vst3;
 #[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "tests on Linux use more of it"))]
 mod vst3_host;
@@ -126,6 +128,7 @@ fn main() -> ExitCode {
             "window-pixels" => pixels::work(),
             "sizes-clap" | "sizes-vst3" | "zooms-clap" | "zooms-vst3" | "dots" => sizes::work(&work),
             "window" | "window-keys" | "window-playing" => window::work(&work),
+            "tuning" => tuning::work(),
             _ => realtime::work(&work),
         };
     }
@@ -243,6 +246,9 @@ fn main() -> ExitCode {
         }
         Nothing: realtime {
             the_watch_bites
+        }
+        Nothing: tuning {
+            a_master_of_mts_esp_is_followed
         }
         Nothing: realtime {
             process_neither_allocates_nor_locks_nor_calls_the_system

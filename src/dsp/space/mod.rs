@@ -67,7 +67,6 @@ mod pre_delay;
 mod resonator;
 mod reverb;
 mod room;
-mod smoothed;
 mod spring;
 mod strings;
 mod ticks;

@@ -1,7 +1,7 @@
 //! Overdrive: soft clipping, without the aliasing of its overtones.
 
 use super::half_band::{Both, HalfBand};
-use super::smoothed::{Smoothed, held};
+use crate::dsp::smoothed::{Smoothed, held};
 use libm::{exp, sqrt};
 use std::f64::consts::LN_10;
 

@@ -1,8 +1,8 @@
 //! Tone control: a low and a high shelving filter.
 
-use super::smoothed::{Smoothed, held};
 use super::ticks::Ticks;
 use crate::dsp::CONTROL_FRAMES;
+use crate::dsp::smoothed::{Smoothed, held};
 use libm::{exp, log, tan};
 use std::f64::consts::{LN_10, PI};
 

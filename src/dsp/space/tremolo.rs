@@ -1,8 +1,8 @@
 //! The tremolo of a vibraphone's motor: the gain goes up and down, alternately on both sides if wanted.
 
-use super::smoothed::Smoothed;
 use super::ticks::Ticks;
 use crate::dsp::CONTROL_FRAMES;
+use crate::dsp::smoothed::Smoothed;
 use libm::cos;
 use std::f64::consts::TAU;
 

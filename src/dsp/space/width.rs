@@ -1,6 +1,6 @@
 //! The width of the stereo image: the level of the side signal relative to the middle.
 
-use super::smoothed::Smoothed;
+use crate::dsp::smoothed::Smoothed;
 
 /// Scales the difference between left and right: 0 is mono, 1 leaves both as they are, 2 is the widest.
 ///

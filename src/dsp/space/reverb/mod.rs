@@ -7,8 +7,8 @@ use super::decay::Decay;
 use super::modes::ModeSet;
 use super::pre_delay::PreDelay;
 use super::resonator::Resonator;
-use super::smoothed::Smoothed;
 use super::ticks::{BODY_TICK, Ticks};
+use crate::dsp::smoothed::Smoothed;
 use libm::{cos, sin};
 use std::f64::consts::FRAC_PI_2;
 

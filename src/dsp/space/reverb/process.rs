@@ -1,8 +1,8 @@
 //! How a reverb renders: it divides blocks at control ticks, and does the work of control ticks.
 
-use super::super::smoothed::held;
 use super::super::ticks::BODY_TICK;
 use super::{ModalReverb, SILENCE, State};
+use crate::dsp::smoothed::held;
 
 /// Smaller input counts as silence, since masses that it moves would be slow to compute.
 const FAINTEST_INPUT: f32 = 1e-15;
