@@ -52,8 +52,13 @@ pub(crate) fn translate(event: &NoteEvent<()>, api: PluginApi) -> Option<(u8, Ev
         }
         NoteEvent::PolyModulation { voice_id, poly_modulation_id, normalized_offset, .. } => {
             let param = PARAMS.get(poly_modulation_id as usize)?.param;
-            // Without an id, no voice can be selected.
-            (0, EventKind::Modulate { id: Some(NoteId::new(voice_id)?), param, offset: normalized_offset })
+            let kind = match NoteId::new(voice_id) {
+                id @ Some(_) => EventKind::Modulate { id, param, offset: normalized_offset },
+                None => {
+                    EventKind::ModulateNotes { notes: notes_of_number(voice_id)?, param, offset: normalized_offset }
+                }
+            };
+            (0, kind)
         }
         NoteEvent::MidiChannelPressure { channel, pressure, .. } => (channel, EventKind::ChannelPressure(pressure)),
         NoteEvent::MidiPitchBend { channel, value, .. } => (channel, bend(value)),
@@ -66,6 +71,25 @@ pub(crate) fn translate(event: &NoteEvent<()>, api: PluginApi) -> Option<(u8, Ev
 /// missing id is not used, because it also ignores ids that are given.
 fn notes(id: VoiceID, channel: Channel, key: Key) -> Notes {
     Notes { id: id.id().and_then(NoteId::new), channel: channel.number(), key: key.number() }
+}
+
+/// Keys and channels as hosts count them, and one more of each for all of them.
+const KEYS: i32 = 129;
+const CHANNELS: i32 = 17;
+
+/// A number by which the notes of a key and a channel pass the wrapper as if it were a note's id. Hosts' ids are not below
+/// −1. None if both fields match any note.
+pub(crate) fn number_of_notes(channel: i16, key: i16) -> Option<i32> {
+    let place = |number: i16, any: i32| if (0..any).contains(&number.into()) { number.into() } else { any };
+    let (channel, key) = (place(channel, CHANNELS - 1), place(key, KEYS - 1));
+    ((channel, key) != (CHANNELS - 1, KEYS - 1)).then_some(-2 - channel * KEYS - key)
+}
+
+/// The notes with a number of [`number_of_notes`]; none for any other number. Real-time safe.
+fn notes_of_number(number: i32) -> Option<Notes> {
+    let place = (-2_i32).checked_sub(number).filter(|place| (0..CHANNELS * KEYS - 1).contains(place))?;
+    let given = |place: i32, any: i32| (place < any).then_some(place as u8);
+    Some(Notes { id: None, channel: given(place / KEYS, CHANNELS - 1), key: given(place % KEYS, KEYS - 1) })
 }
 
 fn express(notes: Notes, expression: Expression, value: f32) -> (u8, EventKind) {
@@ -171,6 +195,34 @@ mod tests {
         let kind = EventKind::Modulate { id: NoteId::new(7), param: Param::Decay, offset: 0.25 };
         assert_eq!(translate(&modulation(Param::Decay as u32), PluginApi::Clap), Some((0, kind)));
         assert_eq!(translate(&modulation(9999), PluginApi::Clap), None);
+    }
+
+    #[test]
+    fn notes_of_a_key_or_a_channel_pass_by_a_number() {
+        let mut numbers = std::collections::BTreeSet::new();
+        for channel in -1..17 {
+            for key in -1..129 {
+                let given = |number: i16, most: i16| (0..most).contains(&number).then_some(number as u8);
+                let notes = Notes { id: None, channel: given(channel, 16), key: given(key, 128) };
+                let number = number_of_notes(channel, key);
+                assert_eq!(number.and_then(notes_of_number), Some(notes).filter(|notes| *notes != Notes::default()));
+                assert!(number.is_none_or(|number| number < -1));
+                numbers.extend(number);
+            }
+        }
+        assert_eq!(numbers.len(), 17 * 129 - 1);
+        let least = *numbers.first().unwrap();
+        for none in [-1, 0, 7, least - 1, least - 2, i32::MIN, i32::MAX] {
+            assert_eq!(notes_of_number(none), None, "{none}");
+        }
+        let modulation = NoteEvent::PolyModulation {
+            timing: 0,
+            voice_id: number_of_notes(3, 60).unwrap(),
+            poly_modulation_id: Param::Decay as u32,
+            normalized_offset: 0.25,
+        };
+        let kind = EventKind::ModulateNotes { notes: Notes::on(3, 60), param: Param::Decay, offset: 0.25 };
+        assert_eq!(translate(&modulation, PluginApi::Clap), Some((0, kind)));
     }
 
     #[test]

@@ -10,6 +10,9 @@
 //! | `live` | the audio thread: follows parameters, passes events on, renders |
 //! | `link` | messages between the window and the audio thread |
 //! | `lock` | locks whose holder may have panicked |
+//! | `layer` | extensions of CLAP that the wrapper lacks, between it and the host |
+//! | `callback`, `marks` | what `layer` tells the host on its main thread; what the host says of parameters |
+//! | `files` | preset and kit files that users name |
 //! | `devices` | the standalone program's devices and ports, as its window chooses them |
 //! | `events` | converts the wrapper's note events to the engine's |
 //! | `tail` | how long the sound continues |
@@ -20,15 +23,19 @@
 //!
 //! The wrapper is nice-plug. Its normalised values are called positions here: knob positions from 0 to 1.
 
+mod callback;
 mod chord;
 mod devices;
 mod editor;
 mod events;
 mod export;
+mod files;
+mod layer;
 mod link;
 mod live;
 mod loaded;
 mod lock;
+mod marks;
 mod mts_esp;
 mod multi;
 mod params;

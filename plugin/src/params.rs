@@ -2,11 +2,13 @@
 
 #![allow(unsafe_code, reason = "the wrapper takes parameters as pointers and has no safe way to set several at once")]
 
+use crate::callback::Callback;
 use crate::editor::host::extent::Extent;
 use crate::link::Link;
 use crate::loaded::{Loaded, Slot};
 use crate::lock::lock;
-use crate::state::{self, Read, State, View};
+use crate::marks::{Mark, Marks};
+use crate::state::{self, Read, State, VIEW, View};
 use nice_plug::prelude::*;
 use nice_plug_core::params::InternalParamMut;
 use nice_plug_core::params::internals::ParamPtr;
@@ -15,6 +17,8 @@ use sprung::preset::Playable;
 use sprung::sound::Collector;
 use std::array::from_fn;
 use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 /// A host's parameter.
@@ -119,7 +123,12 @@ struct Locked {
     may_sound: Collector<Loaded>,
     /// How many states the host has loaded.
     loads: u64,
+    /// The names of a kit's pads, by key.
+    note_names: NoteNames,
 }
+
+/// Names of keys, in the order of the keys.
+type NoteNames = Arc<[(u8, String)]>;
 
 /// The state that the threads of one instance share: parameters, the loaded sound, and the rest.
 pub(crate) struct SprungParams {
@@ -129,6 +138,10 @@ pub(crate) struct SprungParams {
     extent: Extent,
     /// Whether sounds are loaded as the effect plays them: [`State::driven`].
     is_effect: bool,
+    /// Whether the host saves or loads a preset, which has no window.
+    is_for_preset: AtomicBool,
+    callback: Callback,
+    marks: Marks,
     /// Locked while something is loaded or the whole state is read; never by the audio thread.
     locked: Mutex<Locked>,
 }
@@ -148,13 +161,24 @@ impl SprungParams {
     fn of(state: State, is_effect: bool) -> Self {
         let loaded = Arc::new(state.loaded());
         let State { playable, positions, view, .. } = state;
+        let note_names = note_names(&playable);
         let knobs: Vec<Knob> = PARAMS.iter().map(Knob::new).collect();
         knobs.iter().zip(positions).for_each(|(knob, position)| knob.turn(position));
         let may_sound = Collector::default();
         may_sound.keep(&loaded);
-        let locked = Locked { playable, view, complaints: Arc::new([]), loaded: loaded.clone(), may_sound, loads: 0 };
-        let (link, extent) = (Link::default(), Extent::default());
-        Self { knobs, slot: Slot::new(loaded), link, extent, is_effect, locked: Mutex::new(locked) }
+        let complaints = Arc::new([]);
+        let locked = Locked { playable, view, complaints, loaded: loaded.clone(), may_sound, loads: 0, note_names };
+        Self {
+            knobs,
+            slot: Slot::new(loaded),
+            link: Link::default(),
+            extent: Extent::default(),
+            is_effect,
+            is_for_preset: AtomicBool::new(false),
+            callback: Callback::default(),
+            marks: Marks::default(),
+            locked: Mutex::new(locked),
+        }
     }
 
     /// The knobs in the order of the table.
@@ -204,6 +228,35 @@ impl SprungParams {
         self.locked().complaints.clone()
     }
 
+    /// What is to be done on the host's main thread.
+    pub(crate) fn callback(&self) -> &Callback {
+        &self.callback
+    }
+
+    /// The names of a kit's pads, by key; none for a preset. Not for the audio thread.
+    pub(crate) fn note_names(&self) -> NoteNames {
+        self.locked().note_names.clone()
+    }
+
+    /// What the host says of the parameter at a place in the table. Not for the audio thread.
+    pub(crate) fn mark_of(&self, index: usize) -> Option<Mark> {
+        self.marks.of(index)
+    }
+
+    /// Changes what the host says of a parameter, and has the window drawn. Not for the audio thread.
+    pub(crate) fn mark(&self, index: usize, change: impl FnOnce(&mut Mark)) {
+        self.marks.change(index, change);
+        self.link.repaint.request_repaint();
+    }
+
+    /// Runs `work`. If it saves or loads a preset, states leave out the window meanwhile. On the main thread.
+    pub(crate) fn for_preset<T>(&self, is_preset: bool, work: impl FnOnce() -> T) -> T {
+        self.is_for_preset.store(is_preset, Relaxed);
+        let result = work();
+        self.is_for_preset.store(false, Relaxed);
+        result
+    }
+
     /// How many states the host has loaded. Not for the audio thread.
     pub(crate) fn loads(&self) -> u64 {
         self.locked().loads
@@ -219,12 +272,22 @@ impl SprungParams {
         self.load_as_it_is(Read { state, complaints })
     }
 
+    /// Loads a preset or kit that the host has chosen; the window begins anew with it. Not for the audio thread.
+    pub(crate) fn load_for_host(&self, playable: Playable) {
+        let State { seed, view, .. } = self.state();
+        self.load(State::new(playable, seed, view).into());
+        self.locked().loads += 1;
+        self.link.repaint.request_repaint();
+    }
+
     /// As [`SprungParams::load`], but the effect changes nothing in it.
     fn load_as_it_is(&self, Read { state, complaints }: Read) -> Arc<Loaded> {
         let loaded = Arc::new(state.loaded());
+        let note_names = note_names(&state.playable);
         let mut locked = self.locked();
+        let is_renamed = std::mem::replace(&mut locked.note_names, note_names) != locked.note_names;
         locked.playable = state.playable;
-        if !self.extent.is_open() {
+        if !self.extent.is_open() && !self.is_for_preset.load(Relaxed) {
             locked.view = state.view;
         }
         locked.complaints = complaints.into();
@@ -236,6 +299,10 @@ impl SprungParams {
             }
         });
         locked.may_sound.collect();
+        drop(locked);
+        if is_renamed {
+            self.callback.tell_new_names();
+        }
         loaded
     }
 
@@ -267,6 +334,14 @@ impl SprungParams {
     }
 }
 
+/// The names of a kit's pads, by key; none for a preset.
+fn note_names(playable: &Playable) -> NoteNames {
+    let Playable::Kit(kit) = playable else { return Arc::new([]) };
+    let mut names: Vec<_> = kit.pads.iter().map(|(key, pad)| (*key, playable.pad_name(pad).to_owned())).collect();
+    names.sort_unstable_by_key(|(key, _)| *key);
+    names.into()
+}
+
 // SAFETY: the pointers refer to knobs in a vector that is neither changed nor moved while `self` lives.
 unsafe impl Params for SprungParams {
     fn param_map(&self) -> Vec<(String, ParamPtr, String)> {
@@ -279,7 +354,11 @@ unsafe impl Params for SprungParams {
     }
 
     fn serialize_fields(&self) -> BTreeMap<String, String> {
-        BTreeMap::from([(state::FIELD.to_owned(), self.state().to_json())])
+        let mut state = self.state();
+        if self.is_for_preset.load(Relaxed) {
+            state.view = VIEW;
+        }
+        BTreeMap::from([(state::FIELD.to_owned(), state.to_json())])
     }
 
     fn deserialize_fields(&self, fields: &BTreeMap<String, String>) {

@@ -6,6 +6,7 @@
 //! id of the current thread, for which Rust allocates once per thread.
 
 use crate::editor::SprungEditor;
+use crate::layer::published::publish;
 use crate::live::{EVENT_CAPACITY, Live, MAX_VOICES};
 use crate::params::{Knob, SprungParams};
 use crate::state;
@@ -15,11 +16,18 @@ use sprung::units::mono_from_stereo;
 use std::sync::Arc;
 
 /// The instrument as the wrapper uses it.
-#[derive(Default)]
 pub struct Sprung {
     pub(crate) params: Arc<SprungParams>,
     /// Exists while the plugin is active.
     pub(crate) live: Option<Live>,
+}
+
+impl Default for Sprung {
+    fn default() -> Self {
+        let params = Arc::default();
+        publish(&params);
+        Self { params, live: None }
+    }
 }
 
 /// A layout with this many output channels, with or without an input.

@@ -8,6 +8,7 @@
 #![allow(unsafe_code, reason = "the wrapper takes parameters as pointers")]
 
 use crate::editor::SprungEditor;
+use crate::layer::published::publish;
 use crate::live::Live;
 use crate::params::SprungParams;
 use crate::plugin::{Sprung, add_pages};
@@ -45,9 +46,11 @@ impl Default for ResonatorParams {
     fn default() -> Self {
         let chords = IntRange::Linear { min: 0, max: CHORDS.len() as i32 - 1 };
         let chord = |text: &str| CHORDS.iter().position(|(name, _)| name.eq_ignore_ascii_case(text.trim()));
+        let sprung = Arc::new(SprungParams::of_effect());
+        publish(&sprung);
         let percent = |text: &str| text.trim().trim_end_matches('%').trim_end().parse::<f32>().ok();
         Self {
-            sprung: Arc::new(SprungParams::of_effect()),
+            sprung,
             chord: IntParam::new("Chord", 3, chords)
                 .with_value_to_string(Arc::new(|index| {
                     CHORDS[index.clamp(0, CHORDS.len() as i32 - 1) as usize].0.to_owned()

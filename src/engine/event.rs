@@ -143,6 +143,15 @@ pub enum EventKind {
         /// Offset in knob travel.
         offset: f32,
     },
+    /// Modulates a parameter of sounding notes, each as [`EventKind::Modulate`] does one.
+    ModulateNotes {
+        /// The notes that it applies to.
+        notes: Notes,
+        /// The parameter.
+        param: Param,
+        /// Offset in knob travel.
+        offset: f32,
+    },
     /// Sets the tempo in beats per minute, on all channels.
     Tempo(f32),
     /// Gives a key of the channel's instrument another pitch, as MIDI Tuning Standard does. Sounds with a tuning of their own keep it.

@@ -88,6 +88,15 @@ impl Playable {
         }
     }
 
+    /// The name of a pad: its own, or that of its sound.
+    pub fn pad_name<'a>(&'a self, pad: &'a Pad) -> &'a str {
+        match self {
+            _ if !pad.name.is_empty() => &pad.name,
+            Self::Preset(preset) => &preset.name,
+            Self::Kit(kit) => kit.sounds.get(pad.sound).map_or("", |(_, preset)| &preset.name),
+        }
+    }
+
     /// The kit to play. Allocates.
     pub fn kit(&self) -> Arc<Kit> {
         match self {

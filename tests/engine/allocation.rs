@@ -40,6 +40,7 @@ fn storm(block: u32) -> Vec<Event> {
                 param: param.param,
                 offset: value - 0.5,
             },
+            EventKind::ModulateNotes { notes: Notes::on(channel, key), param: param.param, offset: value - 0.5 },
             EventKind::Tempo(60.0 + value),
             EventKind::Tune { key, pitch: 60.0 + value, sounding: n % 2 == 0 },
             EventKind::Release { notes: Notes { id: NoteId::new(n as i32 - 5), ..Notes::default() }, velocity: value },

@@ -73,6 +73,8 @@ fn garbage_in_events_never_comes_out() {
             EventKind::Silence { notes: Notes::on(255, 255) },
             EventKind::Modulate { id: None, param: Param::Gain, offset: value },
             EventKind::Modulate { id: NoteId::new(-1), param: Param::Tune, offset: value },
+            EventKind::ModulateNotes { notes: Notes::on(255, 255), param: Param::Tune, offset: value },
+            EventKind::ModulateNotes { notes: Notes::default(), param: Param::Gain, offset: value },
         ] {
             events.push(Event { frame, channel: 255, kind });
             events.push(event(frame, kind));

@@ -150,6 +150,8 @@ fn any_kind() -> impl Strategy<Value = EventKind> {
             .prop_map(|(param, position)| EventKind::Param { param, value: param.info().denormalise(position) }),
         3 => (any_id(), any_param(), -1.0..1.0f32)
             .prop_map(|(id, param, offset)| EventKind::Modulate { id, param, offset }),
+        1 => (any_notes(), any_param(), -1.0..1.0f32)
+            .prop_map(|(notes, param, offset)| EventKind::ModulateNotes { notes, param, offset }),
         1 => (20.0..300.0f32).prop_map(EventKind::Tempo),
         1 => (any_key(), 0.0..128.0f32, any::<bool>())
             .prop_map(|(key, pitch, sounding)| EventKind::Tune { key, pitch, sounding }),
@@ -342,10 +344,11 @@ fn number(kind: EventKind) -> usize {
         EventKind::Strike { .. } => 14,
         EventKind::Nudge { .. } => 15,
         EventKind::Tune { .. } => 16,
+        EventKind::ModulateNotes { .. } => 17,
     }
 }
 
-const KINDS: usize = 17;
+const KINDS: usize = 18;
 
 #[test]
 fn every_kind_of_event_comes_up() {

@@ -99,6 +99,38 @@ fn wildcards_choose_notes() {
     }
 }
 
+#[test]
+fn modulation_by_key_or_channel_is_that_of_each_of_its_notes() {
+    let notes = [on(0, 0, 57, 1), on(0, 0, 64, 2), on(9, 3, 57, 3), on(10, 3, 50, -1)];
+    for (selected, ids) in [
+        (Notes::default(), &[1, 2, 3][..]),
+        (Notes { key: Some(57), ..Notes::default() }, &[1, 3]),
+        (Notes { channel: Some(0), ..Notes::default() }, &[1, 2]),
+        (Notes::on(3, 57), &[3]),
+        (Notes { id: NoteId::new(2), ..Notes::default() }, &[2]),
+        (Notes::on(5, 57), &[]),
+    ] {
+        // The note without an id is left out, since no single modulation finds it.
+        let with = |modulations: Vec<Event>| {
+            let later = on(9_000, 0, 57, 4);
+            let events: Vec<Event> = notes[..3].iter().copied().chain(modulations).chain([later]).collect();
+            render(&sine(), &events, 12_000)
+        };
+        let (param, offset) = (Param::Tune, 0.03);
+        let together = with(vec![event(4_000, EventKind::ModulateNotes { notes: selected, param, offset })]);
+        let each = with(ids.iter().map(|id| modulate(4_000, Some(*id), param, offset)).collect());
+        assert!(together == each, "{selected:?}");
+        assert_eq!(together == with(vec![]), ids.is_empty(), "{selected:?}");
+    }
+    let by_key = Notes { key: Some(50), ..Notes::default() };
+    let [left, _] = render(
+        &sine(),
+        &[notes[3], event(10, EventKind::ModulateNotes { notes: by_key, param: Param::Tune, offset: 12.0 / 96.0 })],
+        RATE + 2_000,
+    );
+    assert!(periods(&left[2_000..]).abs_diff(294) <= 1, "a note without an id, an octave up from D3");
+}
+
 /// Spectral centroid over the harmonics of a note, as a harmonic number.
 fn centroid(samples: &[f32], frequency: f64, harmonics: usize) -> f64 {
     let (mut sum, mut weighted) = (0.0, 0.0);

@@ -42,6 +42,35 @@ pub(crate) fn modulation_moves_one_voice_or_all() {
     }
 }
 
+/// Hosts without note ids, and modulators of keys and channels.
+pub(crate) fn modulation_moves_the_notes_of_a_key_or_a_channel() {
+    let mut instance = Instance::new();
+    for param in [Param::Tune, Param::Decay, Param::Gain] {
+        let id = instance.id(param);
+        let by = |frame: u64, channel: i16, key: i16, offset: f32| {
+            let given = |number: i16| u8::try_from(number).ok();
+            let notes = Notes { id: None, channel: given(channel), key: given(key) };
+            let kind = EventKind::ModulateNotes { notes, param, offset };
+            (Sent::Modulate(id, Address::key(channel, key), f64::from(offset)).at(frame), At(frame, 0, kind))
+        };
+        let song = [
+            on(0, 0, 60, 1, 0.9),
+            on(1, 3, 64, 2, 0.8),
+            on(2, 3, 60, -1, 0.7),
+            by(500, -1, 60, 0.125),
+            by(500, 3, -1, -0.0625),
+            by(2_001, 3, 60, 0.0625),
+            by(2_001, 0, 61, 0.5),
+            on(5_000, 0, 60, 3, 0.6),
+            by(5_001, 0, 60, 0.25),
+        ];
+        let moved = compare(&format!("{param:?} by key"), &patch(), &song);
+        let unmoved: Vec<_> =
+            song.into_iter().filter(|(_, At(_, _, kind))| matches!(kind, EventKind::NoteOn { .. })).collect();
+        assert!(moved != compare("without", &patch(), &unmoved), "{param:?} is heard");
+    }
+}
+
 pub(crate) fn expressions_reach_their_notes() {
     let note = |channel: u8, key: u8, id: i32| {
         (

@@ -4,6 +4,7 @@
 //! where.
 
 mod automation;
+mod contexts;
 #[cfg(target_os = "linux")]
 mod cpu;
 mod damage;
@@ -25,6 +26,7 @@ mod lifecycle;
 #[cfg(target_os = "linux")]
 mod minutes;
 mod multi;
+mod names;
 mod notes;
 mod parameters;
 mod patches;
@@ -32,6 +34,7 @@ mod patches;
 mod phrase;
 #[cfg(target_os = "linux")]
 mod pixels;
+mod presets;
 #[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "tests on Linux use more of it"))]
 mod process;
 #[cfg(target_os = "linux")]
@@ -123,6 +126,7 @@ fn main() -> ExitCode {
             "growth" | "reopen" => growth::work(&work),
             "storm" | "endings" => storm::work(&work),
             "menu-clap" | "menu-vst3" => host_menu::work(&work),
+            "users-sounds" => presets::work(),
             "screen-reader" => screen_reader::work(),
             "window-cpu" => cpu::work(),
             "window-pixels" => pixels::work(),
@@ -186,6 +190,7 @@ fn main() -> ExitCode {
         }
         Nothing: expression {
             modulation_moves_one_voice_or_all
+            modulation_moves_the_notes_of_a_key_or_a_channel
             expressions_reach_their_notes
             mpe_is_heard_by_channel
             the_tempo_is_handed_on
@@ -202,6 +207,20 @@ fn main() -> ExitCode {
             states_of_all_versions_load
             parameters_that_a_state_lacks_have_their_defaults
             two_states_in_turn_while_audio_runs_are_never_mixed
+        }
+        Nothing: contexts {
+            a_preset_neither_has_nor_brings_the_window
+            all_other_contexts_are_alike
+        }
+        Nothing: names {
+            pads_have_their_names_at_their_keys
+            the_host_is_told_when_names_change
+        }
+        Nothing: presets {
+            every_sound_of_the_factory_is_listed_once
+            sounds_of_the_factory_load_by_their_keys_in_every_plugin
+            a_listing_ends_when_the_host_has_enough
+            what_cannot_be_loaded_is_told_and_changes_nothing
         }
         Nothing: damage {
             what_is_no_state_changes_nothing
@@ -240,6 +259,9 @@ fn main() -> ExitCode {
     let on_linux = vec![];
     #[cfg(target_os = "linux")]
     let on_linux = trials! {
+        Nothing: presets {
+            the_users_sounds_are_listed_and_load
+        }
         Nothing: growth {
             a_thousand_instances_leave_nothing_behind
             the_library_can_be_opened_and_closed_again

@@ -1,6 +1,6 @@
 //! Every parameter of the table as a host sees it: id, name, range, conversion to and from text, value.
 
-use crate::host::{Address, Instance, Parameter, Sent};
+use crate::host::{Address, Instance, Parameter, Sent, open};
 use clack_extensions::params::ParamInfoFlags;
 use clack_extensions::remote_controls::{PluginRemoteControls, RemoteControlsPageBuffer};
 use clack_host::prelude::*;
@@ -66,7 +66,13 @@ pub(crate) fn all_of_the_table_is_told() {
         assert_eq!(has(ParamInfoFlags::IS_STEPPED), is_stepped(info), "{id}");
         assert!(has(ParamInfoFlags::IS_AUTOMATABLE | ParamInfoFlags::IS_MODULATABLE), "{id}");
         let by_note = matches!(info.change, Change::Smoothed(_));
-        assert_eq!(has(ParamInfoFlags::IS_MODULATABLE_PER_NOTE_ID), by_note, "{id}");
+        for by in [
+            ParamInfoFlags::IS_MODULATABLE_PER_NOTE_ID,
+            ParamInfoFlags::IS_MODULATABLE_PER_KEY,
+            ParamInfoFlags::IS_MODULATABLE_PER_CHANNEL,
+        ] {
+            assert_eq!(has(by), by_note, "{id}");
+        }
         let odd = ParamInfoFlags::IS_HIDDEN | ParamInfoFlags::IS_READONLY | ParamInfoFlags::IS_BYPASS;
         assert!(!parameter.flags.intersects(odd), "{id}");
     }
@@ -171,10 +177,15 @@ pub(crate) fn senseless_values_and_unknown_ids_change_nothing_else() {
 }
 
 /// For hardware controllers, and hosts that group parameters: the first page has what one turns first, and after that each
-/// parameter is on exactly one page.
+/// parameter is on exactly one page. The effect's own parameters come before.
 pub(crate) fn remote_control_pages_begin_with_what_one_turns_first_and_have_every_parameter_once() {
-    let mut instance = Instance::new();
-    let rows = rows(&mut instance);
+    for (instance, own_pages) in Instance::of_each(&open()).iter_mut().zip([0, 0, 1]) {
+        pages_of(instance, own_pages);
+    }
+}
+
+fn pages_of(instance: &mut Instance, own_pages: u32) {
+    let rows = rows(instance);
     let handle = instance.clack.plugin_handle();
     let pages: PluginRemoteControls = handle.get_extension().expect("there are pages");
     let mut buffer = RemoteControlsPageBuffer::new();
@@ -183,13 +194,18 @@ pub(crate) fn remote_control_pages_begin_with_what_one_turns_first_and_have_ever
     for index in 0..pages.count(&handle) {
         let page = pages.get(&handle, index, &mut buffer).expect("a known page");
         assert!(page_ids.insert(page.page_id.get()), "two pages have the same id");
-        if index == 0 {
-            let id = |id: &ClapId| rows.iter().find(|(_, parameter)| parameter.id == *id).map(|(info, _)| info.id);
+        let id = |id: &ClapId| rows.iter().find(|(_, parameter)| parameter.id == *id).map(|(info, _)| info.id);
+        if index < own_pages {
+            assert_eq!(page.page_name, b"Resonator");
+            assert_eq!(page.param_ids.iter().flatten().map(id).collect::<Vec<_>>(), [None; 3]);
+            continue;
+        }
+        if index == own_pages {
             let ids: Vec<_> = page.param_ids.iter().flatten().filter_map(id).collect();
             assert_eq!(ids, ["macro1", "macro2", "macro3", "decay", "release", "tilt", "space_mix", "gain"]);
             continue;
         }
-        assert!(index > 1 || page.page_name == b"Macros");
+        assert!(index > own_pages + 1 || page.page_name == b"Macros");
         for id in page.param_ids.iter().flatten() {
             let (info, parameter) = rows.iter().find(|(_, parameter)| parameter.id == *id).expect("a known parameter");
             let section = String::from_utf8_lossy(page.section_name);

@@ -168,6 +168,7 @@ fn storm(instance: &mut Instance) -> Vec<EventBuffer> {
                     Sent::Modulate(parameter.id, Address::id(id - 2), unit() - 0.5),
                     Sent::Express(note, [Kind::Tuning, Kind::Pan, Kind::Pressure, Kind::Volume][id as usize % 4], 0.3),
                     Sent::Modulate(parameter.id, Address::id(-1), (unit() - 0.5) * 0.2),
+                    Sent::Modulate(parameter.id, Address::key((id % 17) as i16 - 1, note.key), unit() - 0.5),
                     Sent::Midi([0xE0 | (id % 16) as u8, 0, (unit() * 127.0) as u8]),
                     Sent::Midi([0xB0 | (id % 16) as u8, [1, 7, 64, 66, 74, 121, 123][id as usize % 7], 100]),
                     Sent::Choke(Address::id(id - 5)),

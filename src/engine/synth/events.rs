@@ -2,7 +2,7 @@
 
 use super::Synth;
 use crate::engine::event::{Event, EventKind, Expression, finite, unit};
-use crate::engine::note::{Note, NoteId, Notes, nearest_channel, nearest_key};
+use crate::engine::note::{Note, Notes, nearest_channel, nearest_key};
 use crate::engine::voice_manager::{has_room, make_room};
 use crate::params::{Change, Param};
 use crate::sound::contact::velocity_of;
@@ -55,7 +55,10 @@ impl Synth {
                 self.follow_param();
             }
             EventKind::Modulate { id: Some(id), param, offset } => {
-                self.modulate_note(id, param, finite(offset).clamp(-1.0, 1.0));
+                self.modulate_notes(|note| note.id == Some(id), param, offset);
+            }
+            EventKind::ModulateNotes { notes, param, offset } => {
+                self.modulate_notes(|note| notes.include(note), param, offset);
             }
             EventKind::Tempo(beats_per_minute) => {
                 let beat_rate = f64::from(finite(beats_per_minute).clamp(1.0, 10_000.0)) / 60.0;
@@ -144,12 +147,13 @@ impl Synth {
         }
     }
 
-    /// Sets the offset of a parameter for one note, in knob travel.
-    fn modulate_note(&mut self, id: NoteId, param: Param, offset: f32) {
+    /// Sets the offset of a parameter for notes, in knob travel.
+    fn modulate_notes(&mut self, are: impl Fn(&Note) -> bool, param: Param, offset: f32) {
+        let offset = finite(offset).clamp(-1.0, 1.0);
         if !matches!(param.info().change, Change::Smoothed(_)) {
             return;
         }
-        for (note, voice) in self.manager.active().filter(|(note, _)| note.id == Some(id)) {
+        for (note, voice) in self.manager.active().filter(|(note, _)| are(note)) {
             if let Some(instrument) = self.instruments.of_note(note) {
                 voice.modulate(instrument, param, offset, instrument.knobs.after(param, 0));
             }

@@ -5,11 +5,11 @@ mod list;
 mod sounds;
 
 use crate::editor::controls::Controls;
-use crate::editor::controls::files::read;
 use crate::editor::keyboard::audition::Audition;
 use crate::editor::theme::{GAP, PADDING, Palette, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::{name_field, take_over};
+use crate::files::read;
 use crate::link::Link;
 use details::{Details, Outcome};
 use egui::{Id, Key, Rect, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, pos2, vec2};
@@ -208,7 +208,7 @@ impl Browser {
                 controls.history.load(playable, controls.params, controls.host);
                 format!("loaded {}", self.words.trim())
             }
-            Err(message) => message,
+            Err(error) => error.to_string(),
         }
     }
 }

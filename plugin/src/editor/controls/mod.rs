@@ -6,6 +6,7 @@ pub(super) mod history;
 pub(super) mod shown;
 
 use crate::editor::theme::Palette;
+use crate::marks::Mark;
 use crate::params::SprungParams;
 use gestures::Gestures;
 use history::History;
@@ -87,6 +88,13 @@ impl Controls<'_> {
     /// The value of a parameter as text.
     pub(super) fn text(&self, info: &ParamInfo) -> String {
         info.format(self.value(info))
+    }
+
+    /// What the host says of a parameter, and the same in words, to be put behind others.
+    pub(super) fn mark(&self, info: &ParamInfo) -> (Option<Mark>, String) {
+        let mark = self.params.mark_of(info.param as usize);
+        let text = mark.as_ref().map_or(String::new(), |mark| format!("   {}", mark.text()));
+        (mark, text)
     }
 
     /// The modulated values of a parameter in the sounding notes, the newest note's first. Notes that do not modulate

@@ -57,11 +57,7 @@ impl Shown {
 
     /// The name of a pad: its own, or that of its sound.
     pub(crate) fn pad_name(&self, pad: &Pad) -> String {
-        let of_sound = || match &self.playable {
-            Playable::Preset(preset) => preset.name.clone(),
-            Playable::Kit(kit) => kit.sounds.get(pad.sound).map_or(String::new(), |(_, preset)| preset.name.clone()),
-        };
-        if pad.name.is_empty() { of_sound() } else { pad.name.clone() }
+        self.playable.pad_name(pad).to_owned()
     }
 
     /// The sound's own tuning; for a kit, the first one among its sounds.

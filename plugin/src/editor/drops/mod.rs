@@ -4,8 +4,8 @@ pub(super) mod fitting;
 mod recordings;
 
 use crate::editor::controls::Controls;
-use crate::editor::controls::files;
 use crate::editor::pages::tuning;
+use crate::files;
 use egui::Ui;
 use sprung::preset::Playable;
 use sprung::preset::library::Library;
@@ -48,7 +48,7 @@ fn is_own(path: &Path, library: &Library) -> bool {
 fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
     let playable = match files::read(&path.display().to_string()) {
         Ok(read) => read,
-        Err(message) => return message,
+        Err(error) => return error.to_string(),
     };
     let (playable, message) = match (playable, library) {
         (Playable::Preset(_), Some(library)) if !is_own(path, library) => match library.import(path) {

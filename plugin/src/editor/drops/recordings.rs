@@ -1,6 +1,6 @@
 //! Makes a sound from recordings on a thread of its own: reads them and fits a preset as `sprung fit` does.
 
-use crate::editor::controls::files;
+use crate::files;
 use sprung::analysis::fit::{Settings, Take, VELOCITY, fit, take_velocities_from_names};
 use sprung::io::sound_file;
 use sprung::preset::Preset;

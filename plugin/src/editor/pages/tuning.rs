@@ -1,6 +1,5 @@
 //! The page of the tuning: its scale, and the frequency of each key.
 
-use crate::editor::controls::files;
 use crate::editor::controls::gestures::load;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
@@ -8,6 +7,7 @@ use crate::editor::keyboard::grid::{Cell, KeyGrid};
 use crate::editor::theme::{GAP, PADDING, SMALL, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::{line, name_field, paragraph};
+use crate::files;
 use egui::{Align2, Id, Key, Rect, TextEdit, Ui, pos2, vec2};
 use sprung::params::Param;
 use sprung::preset::OwnTuning;

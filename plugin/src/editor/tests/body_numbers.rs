@@ -176,9 +176,7 @@ fn the_first_five_minutes() {
     assert_eq!(found.values.get(Param::SpaceMix), 40.0);
     assert_eq!(stage.origin().body().map(|body| (body.model.id(), body.material.id)), Some(("marimba", "glass")));
     let path = Library::at(stage.folder.path()).entries()[0].path.clone();
-    let Playable::Preset(saved) = crate::editor::controls::files::read(path.to_str().unwrap()).unwrap() else {
-        panic!("a kit")
-    };
+    let Playable::Preset(saved) = crate::files::read(path.to_str().unwrap()).unwrap() else { panic!("a kit") };
     let Playable::Preset(edited) = edited.playable else { panic!("a kit") };
     assert_eq!(saved.patch.modes, edited.patch.modes);
 }

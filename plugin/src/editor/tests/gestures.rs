@@ -3,6 +3,8 @@
 use super::fake_host::Call;
 use super::pictures::{Stage, stage};
 use crate::editor::theme::{SIZE, Theme};
+use crate::editor::widgets::knob::face_in;
+use crate::marks::{Automation, Mapping};
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Role, pos2, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use sprung::params::Param;
@@ -312,4 +314,42 @@ fn a_sound_is_varied_by_a_right_click_apart_from_what_is_locked() {
     }
     stage.button("Undo");
     assert_eq!(stage.params.state(), before);
+}
+
+#[test]
+fn what_the_host_says_of_a_knob_is_shown_in_its_colours() {
+    let mut stage = Stage::new();
+    let knob = stage.harness.get_by_role_and_label(Role::Slider, "Mallet hardness").rect();
+    let face = face_in(knob);
+    let colours = |stage: &mut Stage| {
+        stage.harness.run_steps(2);
+        let picture = stage.harness.render().unwrap();
+        [-4.0, 4.0].map(|aside| {
+            let place = face.center_bottom() + vec2(aside, -3.0);
+            let [red, green, blue, _] = picture.get_pixel(place.x as u32, place.y as u32).0;
+            [red, green, blue]
+        })
+    };
+    let before = colours(&mut stage);
+    let (pink, blue) = ([230, 20, 120], [20, 90, 250]);
+    let mapping = Mapping { colour: Some(pink), label: "Knob 3".to_owned(), description: String::new() };
+    let index = Param::MalletHardness as usize;
+    stage.params.mark(index, |mark| mark.mapping = Some(mapping));
+    assert_eq!(colours(&mut stage), [pink, before[1]]);
+    for (automation, is_filled) in [
+        (Automation::Present, false),
+        (Automation::Playing, true),
+        (Automation::Recording, true),
+        (Automation::Overriding, false),
+    ] {
+        stage.params.mark(index, |mark| mark.automation = Some((automation, Some(blue))));
+        assert_eq!(colours(&mut stage)[1] == blue, is_filled, "{automation:?}");
+    }
+    let mark = stage.params.mark_of(index).unwrap();
+    stage.params.mark(index, |mark| *mark = Default::default());
+    assert_eq!(colours(&mut stage), before);
+    stage.params.mark(index, |now| *now = mark);
+    stage.harness.get_by_role_and_label(Role::Slider, "Mallet hardness").click_secondary();
+    stage.harness.run_steps(3);
+    stage.harness.get_by_label("mapped to Knob 3; automation is overridden");
 }

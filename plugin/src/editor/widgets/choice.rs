@@ -4,7 +4,7 @@ use super::knob::{self, keys, wheel};
 use super::text::line;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{KNOB, Palette, SMALL};
-use crate::editor::widgets::knob::menu;
+use crate::editor::widgets::knob::{face, menu};
 use egui::{
     Align2, Id, Popup, Rect, Response, ScrollArea, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
@@ -24,9 +24,11 @@ pub(crate) fn show(ui: &mut Ui, cell: Rect, info: &'static ParamInfo, name: &str
         controls.set(info, place as f32);
     }
     response.context_menu(|ui| menu::show(ui, info, controls));
+    let (mark, said) = controls.mark(info);
     if response.hovered() {
-        *controls.hint = Hint::new(format!("{} {value}", info.name), info.help);
+        *controls.hint = Hint::new(format!("{} {value}{said}", info.name), info.help);
     }
+    face::paint_mark(ui.painter(), rect.center_bottom(), mark.as_ref(), controls.palette);
     line(ui.painter(), knob::name_rect(cell), Align2::CENTER_CENTER, name, SMALL, controls.palette.text);
 }
 

@@ -3,13 +3,17 @@
 use clack_extensions::context_menu::{ContextMenuBuilder, ContextMenuTarget, HostContextMenu, HostContextMenuImpl};
 use clack_extensions::gui::{GuiSize, HostGui, HostGuiImpl};
 use clack_extensions::latency::{HostLatency, HostLatencyImpl};
+use clack_extensions::note_name::{HostNoteName, HostNoteNameImpl};
 use clack_extensions::params::{
     HostParams, HostParamsImplMainThread, HostParamsImplShared, ParamClearFlags, ParamRescanFlags,
 };
+use clack_extensions::preset_discovery::HostPresetLoadImpl;
+use clack_extensions::preset_discovery::prelude::{HostPresetLoad, Location};
 use clack_extensions::thread_check::{HostThreadCheck, HostThreadCheckImpl};
 use clack_extensions::voice_info::{HostVoiceInfo, HostVoiceInfoImpl};
 use clack_host::prelude::*;
 use std::cell::{Cell, RefCell};
+use std::ffi::CStr;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::thread::ThreadId;
@@ -24,7 +28,7 @@ impl HostHandlers for Host {
 
     fn declare_extensions(builder: &mut HostExtensions<Self>, calls: &Calls) {
         builder.register::<HostParams>().register::<HostGui>().register::<HostLatency>().register::<HostVoiceInfo>();
-        builder.register::<HostContextMenu>();
+        builder.register::<HostContextMenu>().register::<HostNoteName>().register::<HostPresetLoad>();
         if calls.tells_threads {
             builder.register::<HostThreadCheck>();
         }
@@ -73,6 +77,42 @@ pub(crate) struct MainThreadCalls {
     pub(crate) latencies: Cell<u32>,
     /// The parameters for which the plugin has asked for a menu, and where in its window.
     pub(crate) menus: RefCell<Vec<(u32, [i32; 2])>>,
+    /// How often the plugin has said that keys have other names.
+    pub(crate) renamings: Cell<u32>,
+    /// What the plugin has said of presets that it was to load, in the order in which it was said.
+    pub(crate) presets: RefCell<Vec<PresetCall>>,
+}
+
+/// What a plugin says of a preset that it was to load.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum PresetCall {
+    /// It is loaded from this file, or from the plugin, by this key.
+    Loaded(Option<String>, Option<String>),
+    /// It is not, for a reason with the system's number.
+    Failed(i32, String),
+}
+
+/// A text of C.
+pub(crate) fn text(string: &CStr) -> String {
+    string.to_str().expect("texts are UTF-8").to_owned()
+}
+
+impl HostNoteNameImpl for MainThreadCalls {
+    fn changed(&self) {
+        self.renamings.set(self.renamings.get() + 1);
+    }
+}
+
+impl HostPresetLoadImpl for MainThreadCalls {
+    fn on_error(&self, _: Location, _: Option<&CStr>, os_error: i32, message: Option<&CStr>) {
+        let message = text(message.expect("an error has a message"));
+        self.presets.borrow_mut().push(PresetCall::Failed(os_error, message));
+    }
+
+    fn loaded(&self, location: Location, key: Option<&CStr>) {
+        let path = location.file_path().map(text);
+        self.presets.borrow_mut().push(PresetCall::Loaded(path, key.map(text)));
+    }
 }
 
 impl<'a> MainThreadHandler<'a> for MainThreadCalls {}

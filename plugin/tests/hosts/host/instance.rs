@@ -1,6 +1,6 @@
 //! One instance of the plugin, on the thread that created it: parameters, state, activation.
 
-use super::calls::{Calls, Host, MainThreadCalls};
+use super::calls::{Calls, Host, MainThreadCalls, PresetCall};
 use super::{Timed, bundle};
 use clack_extensions::params::{ParamInfoBuffer, ParamInfoFlags, PluginParams};
 use clack_extensions::state::PluginState;
@@ -54,6 +54,11 @@ impl Instance {
         Self::at(entry, true, 2)
     }
 
+    /// Instances of all plugins of the library.
+    pub(crate) fn of_each(entry: &PluginEntry) -> [Self; 3] {
+        [0, 1, 2].map(|index| Self::at(entry, true, index))
+    }
+
     fn at(entry: &PluginEntry, tells_threads: bool, index: u32) -> Self {
         let factory = entry.get_factory::<PluginFactory>().expect("the file has plugins");
         let id: &CStr = factory.plugin_descriptor(index).and_then(|descriptor| descriptor.id()).expect("it has one");
@@ -103,6 +108,17 @@ impl Instance {
     /// The parameters for which the plugin has asked for a menu since the last call of this method, and where in its window.
     pub(crate) fn menus(&self) -> Vec<(u32, [i32; 2])> {
         self.clack.access_handler(|calls| calls.menus.take())
+    }
+
+    /// How often the plugin has said that keys have other names, since the last call of this method.
+    pub(crate) fn renamings(&mut self) -> u32 {
+        self.run_callbacks();
+        self.clack.access_handler(|calls| calls.renamings.take())
+    }
+
+    /// What the plugin has said of presets that it was to load, since the last call of this method.
+    pub(crate) fn preset_calls(&self) -> Vec<PresetCall> {
+        self.clack.access_handler(|calls| calls.presets.take())
     }
 
     /// All parameters, in the plugin's order.

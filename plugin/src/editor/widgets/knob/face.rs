@@ -3,7 +3,8 @@
 use crate::editor::routes::Ring;
 use crate::editor::theme::Palette;
 use crate::editor::widgets::disc;
-use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2};
+use crate::marks::{Colour, Mark};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use std::f32::consts::PI;
 
 /// Contents of a face. Positions are 0 to 1.
@@ -42,6 +43,23 @@ fn paint_marks(painter: &Painter, rect: Rect, marks: &[f32], palette: &Palette) 
         let (radius, edge) = if place == 0 { (3.2, 1.2) } else { (2.0, 0.8) };
         let centre = on_ring(rect, *mark);
         disc(painter, centre, radius, palette.modulation, Stroke::new(edge, palette.panel));
+    }
+}
+
+/// Paints what the host says of a parameter: a disc for the controller that it is mapped to, and beside it a ring for
+/// automation, which is filled while that plays or is recorded; both in the host's colours.
+pub(crate) fn paint_mark(painter: &Painter, centre: Pos2, mark: Option<&Mark>, palette: &Palette) {
+    let Some(Mark { mapping, automation }) = mark else { return };
+    let colour = |colour: Option<Colour>| colour.map_or(palette.text, |[r, g, b]| Color32::from_rgb(r, g, b));
+    if let Some(mapping) = mapping {
+        painter.circle_filled(centre - vec2(4.0, 0.0), 3.0, colour(mapping.colour));
+    }
+    if let Some((automation, of)) = automation {
+        let place = centre + vec2(4.0, 0.0);
+        painter.circle_stroke(place, 2.4, Stroke::new(1.2, colour(*of)));
+        if automation.is_running() {
+            painter.circle_filled(place, 3.0, colour(*of));
+        }
     }
 }
 

@@ -12,6 +12,9 @@ use sprung::preset::Playable;
 /// The menu of a right click.
 pub(crate) fn show(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Controls) {
     ui.label(info.name);
+    if let (Some(mark), _) = controls.mark(info) {
+        ui.label(mark.text());
+    }
     if info.unit != Unit::Choice && ui.button("Type a value").clicked() {
         type_value(info, controls);
         ui.close();

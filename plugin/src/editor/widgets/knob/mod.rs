@@ -85,10 +85,11 @@ pub(crate) fn show(
         about
     });
     let is_hovered = response.hovered() || response.dragged() || value_response.hovered();
+    let (mark, said) = controls.mark(info);
     if is_hovered {
         let newest = controls.modulated(info).next();
         let now = newest.map_or(String::new(), |value| format!(" › {}", info.format(value)));
-        *controls.hint = Hint::new(format!("{} {text}{now}", info.name), info.help);
+        *controls.hint = Hint::new(format!("{} {text}{now}{said}", info.name), info.help);
     }
     let palette = controls.palette;
     let face = Face {
@@ -100,6 +101,8 @@ pub(crate) fn show(
         is_focused: response.has_focus(),
     };
     face::paint(ui.painter(), parts.face, palette, &face);
+    // In the gap of the arc.
+    face::paint_mark(ui.painter(), parts.face.center_bottom() - vec2(0.0, 3.0), mark.as_ref(), palette);
     let colour = if is_hovered { palette.text } else { palette.muted };
     line(ui.painter(), parts.name, Align2::CENTER_CENTER, name, SMALL, palette.text);
     if !typed(ui, parts.value, id(info).with("field"), info, controls) {
