@@ -1,7 +1,7 @@
 //! The names of keys, which hosts show in drum editors and on piano rolls.
 
 use crate::host::{Instance, open};
-use crate::patches::{drums, load, patches, state_of_kit};
+use crate::patches::{drums, load, patches, state, state_of_kit};
 use clack_extensions::note_name::{NoteNameBuffer, PluginNoteName};
 use clack_host::events::Match;
 use sprung::preset::{Playable, Preset};
@@ -44,7 +44,7 @@ pub(crate) fn pads_have_their_names_at_their_keys() {
             // CLAP has room for 255 bytes.
             assert!(name == expected || (*expected == long && long.starts_with(name) && name.len() == 255), "{name}");
         }
-        load(&mut instance, &Preset::find("Marimba").unwrap().patch);
+        assert!(instance.load(&state(&Preset::find("Marimba").unwrap().patch)));
         assert_eq!(names(&mut instance), [], "names go with their kit");
     }
 }
