@@ -42,8 +42,8 @@ pub enum Error {
         /// What is wrong and what would be right.
         message: String,
     },
-    /// The work was stopped from outside before its end; nothing was written.
-    #[error("interrupted; nothing was written")]
+    /// The work was stopped from outside before its end; nothing incomplete was written.
+    #[error("interrupted; nothing incomplete was written")]
     Interrupted,
     /// The work was stopped from outside before its end, and some of it was written.
     #[error("interrupted; {left}")]

@@ -117,6 +117,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
             count.show(done as u64, 0, of as u64);
         }
         interrupt::check()
+    });
+    let made = made.inspect_err(|error| {
+        if error.is_interrupt() {
+            complain_lines(&format!("{}: --resume goes on from the finished samples\n", args.output.display()));
+        }
     })?;
     let found = if made.found > 0 { format!(", {} found finished", made.found) } else { String::new() };
     let (samples, loops) = (counted(made.samples, "sample"), counted(made.loops, "loop"));

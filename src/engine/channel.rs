@@ -207,6 +207,11 @@ impl Channel {
         self.gain.slope_frames()
     }
 
+    /// Sets the gains to their targets at once.
+    pub(crate) fn land(&mut self) {
+        self.gain.land();
+    }
+
     /// Advances the gains by `frames` frames.
     pub(crate) fn advance(&mut self, frames: u32) {
         self.gain.advance(frames);

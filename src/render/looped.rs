@@ -9,6 +9,7 @@ use super::wav::{Delivery, Progress, Report, Sink, Source, write};
 use crate::dsp::Limiter;
 use crate::error::{Error, Result};
 use crate::io::Output;
+use std::time::Instant;
 
 /// A song that goes round. It is held in memory: 8 bytes a frame.
 struct Looped<'a> {
@@ -31,8 +32,9 @@ pub fn to_looped_wav(
     output: &mut Output,
     mut progress: impl FnMut(Progress) -> Result<()> + Send,
 ) -> Result<Report> {
+    let started = Instant::now();
     let looped = Looped::new(job, &mut progress)?;
-    write(&looped, delivery, output, None, progress)
+    write(&looped, delivery, output, None, (started, progress))
 }
 
 impl<'a> Looped<'a> {

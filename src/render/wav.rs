@@ -110,7 +110,7 @@ pub fn to_wav(
     output: &mut Output,
     progress: impl FnMut(Progress) -> Result<()> + Send,
 ) -> Result<Report> {
-    write(job, delivery, output, None, progress)
+    write(job, delivery, output, None, (Instant::now(), progress))
 }
 
 /// What is written into a WAV file.
@@ -160,7 +160,7 @@ pub(crate) fn to_labelled_wav(
     progress: impl FnMut(Progress) -> Result<()> + Send,
 ) -> Result<(Report, Vec<NoteLabel>)> {
     let mut labels = Labels::new(job);
-    let report = write(job, delivery, output, Some(&mut labels), progress)?;
+    let report = write(job, delivery, output, Some(&mut labels), (Instant::now(), progress))?;
     let mut labels = labels.finish();
     let modes = labels.iter_mut().flat_map(|label| &mut label.modes);
     modes.for_each(|mode| mode.level_db += report.gain_db);
@@ -172,9 +172,9 @@ pub(super) fn write(
     delivery: &Delivery,
     output: &mut Output,
     labels: Option<&mut Labels>,
-    mut progress: impl FnMut(Progress) -> Result<()> + Send,
+    (started, mut progress): (Instant, impl FnMut(Progress) -> Result<()> + Send),
 ) -> Result<Report> {
-    let (started, job) = (Instant::now(), source.job());
+    let job = source.job();
     let channels = if delivery.mono { 1 } else { 2 };
     let format = WavFormat { sample_rate: job.options.sample_rate, channels, samples: delivery.samples };
     let least_frames = source.known_frames().unwrap_or(job.song_frames());

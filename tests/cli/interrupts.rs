@@ -61,13 +61,13 @@ fn interrupts_leave_nothing_behind() {
 fn what_comes_before_a_part_of_a_song_can_be_interrupted() {
     let sandbox = Sandbox::new();
     sandbox.write("song.mid", song(&[note_on(0, 0, 60), finish(80_000 * 960)]));
-    for output in ["-o out.wav", "--stems stems"] {
+    for output in ["-o out.wav", "--stems stems/of/song"] {
         let has_begun = |folder: &str| {
             let files = std::fs::read_dir(sandbox.path(folder)).into_iter().flatten();
             files.flatten().any(|file| file.file_name().to_str().unwrap().starts_with(".sprung-"))
         };
         let args = format!("render song.mid --from 79000 --rate 768k --bits 16 {output}");
-        let child = start(&sandbox, &[], &args, |_| has_begun(".") || has_begun("stems"));
+        let child = start(&sandbox, &[], &args, |_| has_begun(".") || has_begun("stems/of/song"));
         // Signals are caught right after the file is made.
         std::thread::sleep(Duration::from_millis(300));
         assert_eq!(end(child, "-INT").code(), Some(130), "{output}");
@@ -96,7 +96,7 @@ fn an_interrupted_analysis_writes_nothing() {
         sandbox.write("noise.wav", &noise);
         let ready = |_: &mut Child| sandbox.files().iter().any(|name| name.starts_with(".sprung-"));
         let child = start(&sandbox, &[], args, ready);
-        let expected = (Some(130), "sprung: error: interrupted; nothing was written\n".to_owned());
+        let expected = (Some(130), "sprung: error: interrupted; nothing incomplete was written\n".to_owned());
         assert_eq!(interrupted(child), expected, "{args}");
         assert_eq!(sandbox.files(), ["noise.wav"], "{args}");
     }
@@ -117,7 +117,7 @@ fn an_interrupted_audition_says_what_it_has_written() {
         assert_eq!((files(&sandbox, ".png"), files(&sandbox, "")), (sounds, 2 * sounds), "{said}");
         let all = Preset::factory().len() + KitPreset::factory().len();
         let expected = match sounds {
-            0 => "nothing was written".to_owned(),
+            0 => "nothing incomplete was written".to_owned(),
             _ => format!("{sounds} of {all} sounds are in page, without a page"),
         };
         assert_eq!(said, format!("sprung: error: interrupted; {expected}\n"));

@@ -1,7 +1,7 @@
 //! The effects of the command's options on the sound.
 
 use crate::{Sandbox, end, midi, note_on, song};
-use midly::MidiMessage;
+use midly::{MidiMessage, TrackEvent, TrackEventKind};
 
 fn report(sandbox: &Sandbox, args: &str) -> serde_json::Value {
     serde_json::from_slice(&sandbox.succeeds(&format!("{args} --json --force"))).unwrap()
@@ -105,6 +105,34 @@ fn the_gain_that_the_limiter_advises_keeps_the_balance_and_leaves_it_nothing_to_
             "{base}"
         );
     }
+}
+
+#[test]
+fn what_is_set_at_the_frame_of_a_note_holds_from_its_first_sample() {
+    let sandbox = Sandbox::new();
+    let control = |controller: u8, value: u8| {
+        midi(0, 0, MidiMessage::Controller { controller: controller.into(), value: value.into() })
+    };
+    let master = TrackEvent { delta: 0.into(), kind: TrackEventKind::SysEx(&[0x7f, 0x7f, 4, 1, 0, 0, 0xf7]) };
+    let mut render = |first: TrackEvent<'static>| {
+        sandbox.write("in.mid", song(&[first, note_on(0, 0, 60), end(480)]));
+        sandbox.succeeds("render in.mid --bits 32f --force -o out.wav");
+        let samples = sandbox.wav("out.wav").samples;
+        let side = |side| samples.iter().skip(side).step_by(2).fold(0.0_f64, |peak, sample| peak.max(sample.abs()));
+        [side(0), side(1)]
+    };
+    for silent in [master, control(7, 0), control(11, 0)] {
+        assert_eq!(render(silent), [0.0; 2]);
+    }
+    let [left, right] = render(control(7, 127));
+    let [soft, _] = render(control(7, 32));
+    assert!(left > 0.05 && right > 0.05 && soft < 0.08 * left, "{left} {right} {soft}");
+    // The shared plate has both sides, 20 dB below.
+    let [left, right] = render(control(10, 0));
+    assert!(right < 0.2 * left, "{left} {right}");
+    sandbox.write("in.mid", song(&[control(91, 0), note_on(0, 0, 60), end(480)]));
+    sandbox.succeeds("render in.mid --stems stems");
+    assert!(!sandbox.path("stems/space.wav").exists(), "nothing is sent");
 }
 
 #[test]

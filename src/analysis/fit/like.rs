@@ -26,8 +26,10 @@ const VELOCITY: f64 = super::take::VELOCITY / 127.0;
 pub struct Model {
     bands: LogMel,
     frames: usize,
-    /// The key that was recorded, as a fractional MIDI key.
+    /// The key that was recorded, as a fractional MIDI key; C4 if no pitch was found.
     pub key: f64,
+    /// Whether a key was given or found.
+    pub is_pitched: bool,
     /// Whether the key was estimated. Then it can be an octave off.
     is_estimated: bool,
 }
@@ -54,8 +56,9 @@ impl Model {
             return Err(Error::format(name, "it is silent: expected a sound"));
         }
         sound.truncate((LONGEST * f64::from(RATE)) as usize);
-        let (is_estimated, key) = (key.is_none(), key.unwrap_or_else(|| estimated(&sound)));
-        Ok(Self { bands: MelBands::new().measure(&sound), frames: sound.len(), key, is_estimated })
+        let (is_estimated, key) = (key.is_none(), key.or_else(|| estimated(&sound)));
+        let (is_pitched, key) = (key.is_some(), key.unwrap_or(60.0));
+        Ok(Self { bands: MelBands::new().measure(&sound), frames: sound.len(), key, is_pitched, is_estimated })
     }
 
     /// How near a preset is at a first look: on the key that comes nearest of the recording's, that an octave higher or lower if it was
@@ -89,8 +92,8 @@ impl Model {
     }
 }
 
-/// The key of a sound by its modes; that of noise is a guess.
-fn estimated(sound: &[f32]) -> f64 {
+/// The key of a sound by its modes, if it has any.
+fn estimated(sound: &[f32]) -> Option<f64> {
     let settings = modes::Settings { most_modes: 24, longest: 1.0, all_strikes: false };
     let found = modes(&[sound.to_vec()], RATE.into(), &settings, &mut |_| true);
     let strikes = found.map(|found| found.strikes).unwrap_or_default();
@@ -100,7 +103,7 @@ fn estimated(sound: &[f32]) -> f64 {
     };
     let partials: Vec<Partial> =
         strikes.iter().flat_map(|strike| strike.modes.iter().chain(&strike.steady)).map(partial).collect();
-    key_from_frequency(pitch::estimate(&partials), A4)
+    (!partials.is_empty()).then(|| key_from_frequency(pitch::estimate(&partials), A4))
 }
 
 #[cfg(test)]

@@ -74,7 +74,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return print(&format!("{:#}\n", Value::Array(described.collect())));
     }
     if args.note.is_none() {
-        complain_lines(&format!("{name}: key {:.2}, estimated; --note says another\n", model.key));
+        let found =
+            if model.is_pitched { format!("key {:.2}, estimated", model.key) } else { "no pitch found".to_owned() };
+        complain_lines(&format!("{name}: {found}; --note says another\n"));
     }
     let mut text = String::new();
     for ((family, preset), Nearness { distance, key }) in nearest {

@@ -20,7 +20,7 @@ pub(super) fn run(args: &Args, request: &Request, folder: &Path) -> Result<()> {
     let job = prepared.job();
     args.check_length(format, &job)?;
     let stems = stems_of(&job);
-    let is_new = !folder.exists();
+    let new: Vec<&Path> = folder.ancestors().take_while(|folder| !folder.exists()).collect();
     let others = others(folder, &stems, format);
     if !args.force && !others.is_empty() {
         return Err(Error::value("--stems", format!("{}: expected another folder, or --force", told(folder, &others))));
@@ -59,8 +59,8 @@ pub(super) fn run(args: &Args, request: &Request, folder: &Path) -> Result<()> {
         wanted.map(|(output, _)| output.commit()).collect::<Result<Vec<()>>>().map(|written| (written.len(), report))
     };
     let (written, report) = write().inspect_err(|_| {
-        // Only a folder that is empty is removed.
-        let _ = is_new.then(|| fs::remove_dir(folder));
+        // Only folders that are empty are removed.
+        new.iter().for_each(|folder| _ = fs::remove_dir(folder));
     })?;
     if !others.is_empty() {
         complain("warning", format_args!("{}: they stay there, and are no part of this mix", told(folder, &others)));

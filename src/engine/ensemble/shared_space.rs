@@ -32,6 +32,8 @@ const SMOOTHING_SECONDS: f64 = 0.02;
 pub(super) struct SharedSpace {
     space: Space,
     sends: [Ramp; 16],
+    /// The last frame of each channel.
+    last: [[f32; 2]; 16],
     smoothing_frames: u32,
     left: Vec<f32>,
     right: Vec<f32>,
@@ -53,6 +55,7 @@ impl SharedSpace {
         Some(Self {
             space,
             sends: [Ramp::at_rest(FULL_SEND * DEFAULT_REVERB_SEND); 16],
+            last: [[0.0; 2]; 16],
             smoothing_frames: (SMOOTHING_SECONDS * sample_rate) as u32,
             left: vec![0.0; frames],
             right: vec![0.0; frames],
@@ -82,7 +85,13 @@ impl SharedSpace {
             if chunk.owner(event) == channel {
                 let at = chunk.frame(event).max(frame);
                 self.gather(parts, frame, at);
-                self.sends[usize::from(channel)].set(FULL_SEND * unit(value), self.smoothing_frames);
+                let (to, send) = (FULL_SEND * unit(value), &mut self.sends[usize::from(channel)]);
+                // On a silent channel it counts at once, so that the attack of a note at the same frame is sent by it.
+                if self.last[usize::from(channel)] == [0.0; 2] {
+                    *send = Ramp::at_rest(to);
+                } else {
+                    send.set(to, self.smoothing_frames);
+                }
                 frame = at;
             }
         }
@@ -109,8 +118,11 @@ impl SharedSpace {
 
     /// Sums the sends of the channels between two frames of a chunk, in channel order.
     fn gather(&mut self, parts: &[Part], from: usize, to: usize) {
-        let Self { sends, left, right, .. } = self;
-        for (send, part) in sends.iter_mut().zip(parts) {
+        let Self { sends, last, left, right, .. } = self;
+        for ((send, last), part) in sends.iter_mut().zip(last).zip(parts) {
+            if to > from {
+                *last = if part.is_heard { part.output().map(|side| side[to - 1]) } else { [0.0; 2] };
+            }
             if part.is_heard {
                 let [part_left, part_right] = part.output();
                 add(&mut left[from..to], &part_left[from..to], send);

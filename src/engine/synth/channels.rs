@@ -111,6 +111,11 @@ impl Channels {
         (number == controller::DATA && sender.awaits_zone()).then(|| seven_bits(value))
     }
 
+    /// Sets the gains of a channel to their targets at once, for one on which nothing sounds.
+    pub(super) fn land(&mut self, channel: u8) {
+        self.channels[usize::from(channel)].land();
+    }
+
     /// Makes a zone of a master and `members` channels. Returns the channels whose master has changed.
     pub(super) fn configure_zone(&mut self, master: u8, members: u8) -> impl Iterator<Item = u8> + use<> {
         let before = self.zones;

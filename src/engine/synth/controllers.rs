@@ -11,6 +11,12 @@ impl Synth {
             self.control_voices(reached, number, value >= 0.5);
         }
         let members = self.channels.control(channel, number, value);
+        let is_gain =
+            matches!(number, controller::VOLUME | controller::EXPRESSION | controller::PAN | controller::BALANCE);
+        // A ramp would let the attack of a note at the same frame through at the gain from before.
+        if is_gain && !self.sounds_on(channel) {
+            self.channels.land(channel);
+        }
         if number == controller::BRIGHTNESS {
             self.channels.reach(channel).for_each(|reached| self.brighten(reached));
         }
@@ -20,6 +26,12 @@ impl Synth {
         if let Some(members) = members {
             self.configure_zone(channel, members);
         }
+    }
+
+    /// Whether a note sounds that a message on `channel` affects.
+    fn sounds_on(&mut self, channel: u8) -> bool {
+        let Self { manager, channels, .. } = self;
+        manager.active().any(|(note, _)| channels.reach(channel).any(|reached| reached == note.channel))
     }
 
     /// Handles pedals and mode messages, which concern the notes of a channel.
