@@ -3,7 +3,7 @@
 mod container;
 mod fault;
 mod limits;
-mod master_volume;
+mod master;
 mod reader;
 mod simultaneous;
 mod system_exclusive;
@@ -130,7 +130,7 @@ fn parse(bytes: &[u8], Reading { lenient, pattern }: Reading) -> Result<MidiFile
     events.splice(..0, told);
     events.sort_by_key(|(tick, ..)| *tick);
     simultaneous::release_before_strike(&mut events);
-    let events = master_volume::spread(events)?;
+    let events = master::spread(events)?;
     tunings.sort_by_key(|(tick, _)| *tick);
     let events = tuning_standard::spread(events, &tunings)?;
     let map = TempoMap::new(header.timing, &tempos)?;

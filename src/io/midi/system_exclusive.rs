@@ -1,10 +1,11 @@
-//! Converts system exclusive messages to events: resets of General MIDI, GS and XG, master volumes, and drum parts of GS and XG.
+//! Converts system exclusive messages to events: resets of General MIDI, GS and XG, volumes and balances of the master,
+//! and drum parts of GS and XG.
 
-use super::master_volume::ALL_CHANNELS;
+use super::master::ALL_CHANNELS;
 use crate::engine::EventKind;
 use crate::engine::banks::{BANK_SELECT, DRUM_BANK, DRUM_CHANNEL, MELODIC_BANK};
 use crate::engine::midi::DEFAULT_REVERB_SEND;
-use crate::engine::midi::controller::{REVERB_SEND, VOLUME};
+use crate::engine::midi::controller::{BALANCE, REVERB_SEND, VOLUME};
 
 /// Bytes of reset messages, without the first byte F0 and without device numbers: General MIDI 1 and 2 on, and off
 /// (Universal Non-Real Time messages), and Yamaha's XG System On.
@@ -13,6 +14,7 @@ const XG_RESET: [u8; 6] = [0x4C, 0x00, 0x00, 0x7E, 0x00, 0xF7];
 
 /// The start of messages that set the master volume: of every device (Universal Real Time), XG and GS.
 const MASTER_VOLUME: [u8; 2] = [0x04, 0x01];
+const MASTER_BALANCE: [u8; 2] = [0x04, 0x02];
 const XG_MASTER_VOLUME: [u8; 4] = [0x4C, 0x00, 0x00, 0x04];
 const GS_MASTER_VOLUME: [u8; 3] = [0x40, 0x00, 0x04];
 
@@ -32,23 +34,26 @@ impl Default for DrumParts {
 }
 
 impl DrumParts {
-    /// The events that a message is converted to, with their channels: volumes of [`ALL_CHANNELS`], bank selects, reverb sends and
+    /// The events that a message is converted to, with their channels: volumes and balances of [`ALL_CHANNELS`], bank selects, reverb sends and
     /// program changes. `message` is the message after its byte F0. All other messages give no events.
     pub(super) fn system_exclusive(&mut self, message: &[u8]) -> Vec<(u8, EventKind)> {
         match message {
             [universal, _, id, 0x01..=0x03, ..] if [*universal, *id] == GENERAL_MIDI => self.reset(),
             [0x43, _, rest @ ..] if rest.starts_with(&XG_RESET) => self.reset(),
             [0x7F, _, first, second, fine, coarse, 0xF7] if [*first, *second] == MASTER_VOLUME => {
-                master_volume((f32::from(*coarse) * 128.0 + f32::from(*fine)) / 16_383.0)
+                master(VOLUME, (f32::from(*coarse) * 128.0 + f32::from(*fine)) / 16_383.0)
+            }
+            [0x7F, _, first, second, fine, coarse, 0xF7] if [*first, *second] == MASTER_BALANCE => {
+                master(BALANCE, (f32::from(*coarse) + f32::from(*fine) / 128.0) / 127.0)
             }
             [0x43, _, 0x4C, 0x08, part @ 0..=15, 0x07, mode, 0xF7] => self.set(*part, *mode > 0),
             [0x43, _, rest @ .., volume, 0xF7] if *rest == XG_MASTER_VOLUME => {
-                master_volume(f32::from(*volume) / 127.0)
+                master(VOLUME, f32::from(*volume) / 127.0)
             }
             [0x41, _, model, set, rest @ ..] if [*model, *set] == GS_SET => match rest {
                 _ if rest.starts_with(&GS_RESET) => self.reset(),
                 [address @ .., volume, _, 0xF7] if *address == GS_MASTER_VOLUME => {
-                    master_volume(f32::from(*volume) / 127.0)
+                    master(VOLUME, f32::from(*volume) / 127.0)
                 }
                 [0x40, part @ 0x10..=0x1F, 0x15, map, ..] => self.set(gs_channel(part & 15), *map > 0),
                 _ => Vec::new(),
@@ -57,13 +62,13 @@ impl DrumParts {
         }
     }
 
-    /// Sets every channel to bank 0 and its reverb send to the default (General MIDI 2), and the master volume to its maximum. The
+    /// Sets every channel to bank 0 and its reverb send to the default (General MIDI 2), and the master to full volume in the centre. The
     /// sound of a channel changes only with its next program change.
     fn reset(&mut self) -> Vec<(u8, EventKind)> {
         *self = Self::default();
         let send = EventKind::Control { controller: REVERB_SEND, value: DEFAULT_REVERB_SEND };
         let channels = (0..16).flat_map(|channel| [(channel, bank(0)), (channel, send)]);
-        channels.chain(master_volume(1.0)).collect()
+        channels.chain(master(VOLUME, 1.0)).chain(master(BALANCE, 64.0 / 127.0)).collect()
     }
 
     /// Gives a channel drums or melodic sounds, at once. Yamaha's XG does so by part modes (08 nn 07: 0 is normal, others are drums),
@@ -80,8 +85,8 @@ fn bank(value: u8) -> EventKind {
     EventKind::Control { controller: BANK_SELECT, value: f32::from(value) / 127.0 }
 }
 
-fn master_volume(value: f32) -> Vec<(u8, EventKind)> {
-    vec![(ALL_CHANNELS, EventKind::Control { controller: VOLUME, value: value.min(1.0) })]
+fn master(controller: u8, value: f32) -> Vec<(u8, EventKind)> {
+    vec![(ALL_CHANNELS, EventKind::Control { controller, value: value.min(1.0) })]
 }
 
 /// The channel of a part of a GS device.
@@ -120,7 +125,7 @@ mod tests {
             &[0x41, 0x10, 0x42, 0x12, 0x40, 0x00, 0x7F, 0x00, 0x41, 0xF7],
             &[0x43, 0x10, 0x4C, 0x00, 0x00, 0x7E, 0x00, 0xF7],
         ] {
-            assert_eq!(send(reset).len(), 33);
+            assert_eq!(send(reset).len(), 34);
         }
         assert!(send(&[0x7E, 0x7F, 0x06, 0x01, 0xF7]).is_empty(), "an identity request");
         assert!(send(&[]).is_empty());
@@ -134,7 +139,7 @@ mod tests {
             (&[0x43, 0x10, 0x4C, 0x00, 0x00, 0x04, 0x00, 0xF7], 0.0),
             (&[0x41, 0x10, 0x42, 0x12, 0x40, 0x00, 0x04, 0x7F, 0x3D, 0xF7], 1.0),
         ] {
-            assert_eq!(DrumParts::default().system_exclusive(message), master_volume(value));
+            assert_eq!(DrumParts::default().system_exclusive(message), master(VOLUME, value));
         }
     }
 }

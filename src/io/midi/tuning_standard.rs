@@ -26,6 +26,8 @@ type Pitches = [f32; 128];
 pub(super) enum Change {
     /// Pitches of keys in a tuning program, which has its bank in the upper seven bits.
     Keys { program: u16, keys: Vec<(u8, f32)> },
+    /// Semitones by which all channels are off: by master fine tuning, or coarse (GM2, 4.1), whichever the place says.
+    Master { place: usize, semitones: f32 },
     /// Semitones by which each step of the octave, from C, is off; on the channels whose bits are set.
     Octave { channels: u16, offsets: [f32; 12] },
 }
@@ -41,7 +43,15 @@ pub(super) struct Message {
 impl Message {
     /// Reads a system exclusive message after its byte F0; none if it is of another kind.
     pub(super) fn read(message: &[u8]) -> Option<Self> {
-        let [universal @ (0x7E | 0x7F), _, 0x08, kind, data @ .., 0xF7] = message else { return None };
+        let master = |place, semitones| Some(Self { change: Change::Master { place, semitones }, sounding: true });
+        let (universal, kind, data) = match message {
+            [0x7F, _, 0x04, 0x03, fine, coarse, 0xF7] => {
+                return master(0, (f32::from(*coarse) * 128.0 + f32::from(*fine) - 8192.0) / 8192.0);
+            }
+            [0x7F, _, 0x04, 0x04, _, coarse, 0xF7] => return master(1, f32::from(*coarse) - 64.0),
+            [universal @ (0x7E | 0x7F), _, 0x08, kind, data @ .., 0xF7] => (universal, kind, data),
+            _ => return None,
+        };
         let program = |bank: u8, program: u8| u16::from(bank) << 7 | u16::from(program);
         let change = match (kind, data) {
             (0x01, [number, rest @ ..]) => Change::Keys { program: program(0, *number), keys: dump(rest)? },
@@ -111,6 +121,9 @@ struct Device {
     selected: [[u8; 2]; 16],
     playing: [u16; 16],
     pitches: [Pitches; 16],
+    /// The pitches without the master's fine and coarse tuning in semitones, and that.
+    wanted: [Pitches; 16],
+    master: [f32; 2],
     events: Vec<(u64, u8, EventKind)>,
 }
 
@@ -132,6 +145,8 @@ pub(super) fn spread(
         programs: BTreeMap::new(),
         selected: [[127; 2]; 16],
         playing: [0; 16],
+        master: [0.0; 2],
+        wanted: [equal(); 16],
         pitches: [equal(); 16],
         events: Vec::with_capacity(events.len()),
     };
@@ -160,6 +175,11 @@ impl Device {
                 (0..16)
                     .filter(|channel| playing[usize::from(*channel)] == *program)
                     .try_for_each(|channel| self.tune(tick, channel, &pitches, *sounding))
+            }
+            Change::Master { place, semitones } => {
+                self.master[*place] = *semitones;
+                let wanted = self.wanted;
+                (0..).zip(&wanted).try_for_each(|(channel, pitches)| self.tune(tick, channel, pitches, *sounding))
             }
             Change::Octave { channels, offsets } => {
                 let pitches = stretched(*offsets);
@@ -191,16 +211,18 @@ impl Device {
         self.tune(tick, channel, &pitches, false)
     }
 
-    /// Gives a channel the pitches that it does not have yet.
+    /// Gives a channel the pitches that it does not have yet, with the master's tuning.
     fn tune(&mut self, tick: u64, channel: u8, pitches: &Pitches, sounding: bool) -> Result<(), String> {
         if channel == DRUM_CHANNEL {
             return Ok(());
         }
+        self.wanted[usize::from(channel)] = *pitches;
         let own = &mut self.pitches[usize::from(channel)];
         for (key, (own, pitch)) in (0..).zip(own.iter_mut().zip(pitches)) {
-            if own != pitch {
-                *own = *pitch;
-                self.events.push((tick, channel, EventKind::Tune { key, pitch: *pitch, sounding }));
+            let pitch = pitch + self.master[0] + self.master[1];
+            if *own != pitch {
+                *own = pitch;
+                self.events.push((tick, channel, EventKind::Tune { key, pitch, sounding }));
             }
         }
         if self.events.len() > MAX_EVENTS {
@@ -271,6 +293,18 @@ mod tests {
             let short = [&whole[..whole.len() - 3], &[0xF7]].concat();
             assert_eq!(Message::read(&short), None, "{kind}: a dump without its last step");
         }
+    }
+
+    #[test]
+    fn a_master_tuning_moves_all_keys_but_drums_and_adds_up() {
+        let messages = [
+            (5, Message::read(&[0x7F, 0x7F, 4, 4, 0, 66, 0xF7]).unwrap()),
+            (6, Message::read(&[0x7F, 0x7F, 4, 3, 0, 0x20, 0xF7]).unwrap()),
+        ];
+        let events = spread(vec![control(9, 7, 100)], &messages).unwrap();
+        let tuned = tuned(&events);
+        assert_eq!((tuned.len(), tuned[60]), (2 * 15 * 128, (5, 0, 60, 62.0, true)));
+        assert_eq!((tuned[15 * 128 + 60], tuned[15 * 128 + 9 * 128].1), ((6, 0, 60, 61.5, true), 10));
     }
 
     #[test]
