@@ -114,7 +114,7 @@ fn what_is_set_at_the_frame_of_a_note_holds_from_its_first_sample() {
         midi(0, 0, MidiMessage::Controller { controller: controller.into(), value: value.into() })
     };
     let master = TrackEvent { delta: 0.into(), kind: TrackEventKind::SysEx(&[0x7f, 0x7f, 4, 1, 0, 0, 0xf7]) };
-    let mut render = |first: TrackEvent<'static>| {
+    let render = |first: TrackEvent<'static>| {
         sandbox.write("in.mid", song(&[first, note_on(0, 0, 60), end(480)]));
         sandbox.succeeds("render in.mid --bits 32f --force -o out.wav");
         let samples = sandbox.wav("out.wav").samples;
