@@ -1,5 +1,4 @@
-//! Converts system exclusive messages to events: resets of General MIDI, GS and XG, volumes and balances of the master,
-//! and drum parts of GS and XG.
+//! Converts system exclusive messages to events: resets, the master's volume and balance, and drum parts of GS and XG.
 
 use super::master::ALL_CHANNELS;
 use crate::engine::EventKind;
