@@ -161,7 +161,8 @@ impl Live {
         self.tuning.iter_mut().for_each(mts_esp::Client::look);
         let a4 = self.synth.values().get(Param::Tuning).into();
         for key in 0..KEYS as u8 {
-            if let Some(kind) = self.tuning.as_mut().and_then(|tuning| tuning.change(key, a4)) {
+            let Some(tuning) = &mut self.tuning else { return };
+            if let Some(kind) = tuning.change(key, a4) {
                 self.handle(0, kind);
             }
         }

@@ -123,9 +123,7 @@ impl Channel {
             controller::RESET => self.reset_controllers(),
             _ => {}
         }
-        if let controller::VOLUME | controller::EXPRESSION | controller::PAN | controller::BALANCE | controller::RESET =
-            controller
-        {
+        if controller::is_gain(controller) || controller == controller::RESET {
             let gain = self.volume * self.volume * self.expression * self.expression;
             // A pan does not mix the sides of a sound, so it is a balance: both positions add up.
             self.gain.aim(gain, (self.pan + (self.balance - 0.5)).clamp(0.0, 1.0));

@@ -60,6 +60,11 @@ pub mod controller {
     pub(crate) const MONO: u8 = 126;
     /// Poly mode.
     pub(crate) const POLY: u8 = 127;
+
+    /// Whether a controller sets the gains of a channel.
+    pub(crate) const fn is_gain(controller: u8) -> bool {
+        matches!(controller, VOLUME | EXPRESSION | PAN | BALANCE)
+    }
 }
 
 /// The value of [`controller::REVERB_SEND`] at the start and after a system reset (General MIDI 2, 1999).

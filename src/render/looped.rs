@@ -34,7 +34,7 @@ pub fn to_looped_wav(
 ) -> Result<Report> {
     let started = Instant::now();
     let looped = Looped::new(job, &mut progress)?;
-    write(&looped, delivery, output, None, (started, progress))
+    write(&looped, delivery, output, None, started, progress)
 }
 
 impl<'a> Looped<'a> {

@@ -110,7 +110,7 @@ pub fn to_wav(
     output: &mut Output,
     progress: impl FnMut(Progress) -> Result<()> + Send,
 ) -> Result<Report> {
-    write(job, delivery, output, None, (Instant::now(), progress))
+    write(job, delivery, output, None, Instant::now(), progress)
 }
 
 /// What is written into a WAV file.
@@ -160,7 +160,7 @@ pub(crate) fn to_labelled_wav(
     progress: impl FnMut(Progress) -> Result<()> + Send,
 ) -> Result<(Report, Vec<NoteLabel>)> {
     let mut labels = Labels::new(job);
-    let report = write(job, delivery, output, Some(&mut labels), (Instant::now(), progress))?;
+    let report = write(job, delivery, output, Some(&mut labels), Instant::now(), progress)?;
     let mut labels = labels.finish();
     let modes = labels.iter_mut().flat_map(|label| &mut label.modes);
     modes.for_each(|mode| mode.level_db += report.gain_db);
@@ -172,7 +172,8 @@ pub(super) fn write(
     delivery: &Delivery,
     output: &mut Output,
     labels: Option<&mut Labels>,
-    (started, mut progress): (Instant, impl FnMut(Progress) -> Result<()> + Send),
+    started: Instant,
+    mut progress: impl FnMut(Progress) -> Result<()> + Send,
 ) -> Result<Report> {
     let job = source.job();
     let channels = if delivery.mono { 1 } else { 2 };

@@ -1,4 +1,4 @@
-//! What every reader of sound files is held to, and the checksums without which a changed file is refused at once.
+//! What every reader of sound files is held to.
 
 use libfuzzer_sys::Corpus;
 use sprung::io::sound_file::{DECODER, read};
@@ -30,23 +30,4 @@ pub fn check(bytes: &[u8], is_of_format: impl Fn(&[u8]) -> bool) -> Corpus {
         assert!(sound.channels.iter().all(|channel| channel.len() == sound.frames()), "channels of different lengths");
     }
     Corpus::Keep
-}
-
-/// A checksum without reflection, from 0, of the low `bits` bits.
-#[allow(dead_code, reason = "WAV and AIFF have no checksums")]
-pub fn sum(bytes: &[u8], bits: u32, polynomial: u32) -> u32 {
-    let (top, mask) = (1 << (bits - 1), u32::MAX >> (32 - bits));
-    bytes.iter().fold(0, |sum, byte| {
-        (0..8).fold(sum ^ u32::from(*byte) << (bits - 8), |sum, _| {
-            (if sum & top == 0 { sum << 1 } else { sum << 1 ^ polynomial }) & mask
-        })
-    })
-}
-
-/// The parts of a file, each from a place where `is_start` finds a start to the next.
-#[allow(dead_code, reason = "WAV and AIFF have no checksums")]
-pub fn parts(bytes: &[u8], is_start: impl Fn(&[u8]) -> bool) -> Vec<std::ops::Range<usize>> {
-    let mut starts: Vec<usize> = (0..bytes.len()).filter(|at| is_start(&bytes[*at..])).collect();
-    starts.push(bytes.len());
-    starts.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }

@@ -11,10 +11,8 @@ impl Synth {
             self.control_voices(reached, number, value >= 0.5);
         }
         let members = self.channels.control(channel, number, value);
-        let is_gain =
-            matches!(number, controller::VOLUME | controller::EXPRESSION | controller::PAN | controller::BALANCE);
         // A ramp would let the attack of a note at the same frame through at the gain from before.
-        if is_gain && !self.sounds_on(channel) {
+        if controller::is_gain(number) && !self.sounds_on(channel) {
             self.channels.land(channel);
         }
         if number == controller::BRIGHTNESS {

@@ -8,34 +8,32 @@ use crate::engine::midi::controller::{BALANCE, VOLUME};
 pub(super) const ALL_CHANNELS: u8 = 16;
 
 /// The balance of a channel or the master in the centre.
-const CENTRE: f32 = 64.0 / 127.0;
+pub(super) const CENTRE: f32 = 64.0 / 127.0;
 
-/// A controller that a master has as well: what channels and master have of it.
+/// A controller that a master has as well: what channels and master have of it, and how both go together.
 struct Shared {
     own: [f32; ALL_CHANNELS as usize],
     master: f32,
+    together: fn(f32, f32) -> f32,
 }
 
 impl Shared {
-    const fn at(value: f32) -> Self {
-        Self { own: [value; ALL_CHANNELS as usize], master: value }
+    const fn at(value: f32, together: fn(f32, f32) -> f32) -> Self {
+        Self { own: [value; ALL_CHANNELS as usize], master: value, together }
     }
 }
 
 /// Replaces each volume and balance of the master by those of channels: a channel’s own volume times the master’s, as both have the
 /// same curve, and the balances added up. The events are in order of time.
 pub(super) fn spread(events: Vec<(u64, u8, EventKind)>) -> Result<Vec<(u64, u8, EventKind)>, String> {
-    let (mut volume, mut balance) = (Shared::at(1.0), Shared::at(CENTRE));
+    let mut volume = Shared::at(1.0, |own, master| own * master);
+    let mut balance = Shared::at(CENTRE, |own, master| (own + (master - CENTRE)).clamp(0.0, 1.0));
     let mut spread = Vec::with_capacity(events.len());
     for (tick, channel, kind) in events {
         match kind {
             EventKind::Control { controller: controller @ (VOLUME | BALANCE), value } => {
                 let shared = if controller == VOLUME { &mut volume } else { &mut balance };
-                let Shared { own, master } = shared;
-                let together = |own: f32, master: f32| match controller {
-                    VOLUME => own * master,
-                    _ => (own + (master - CENTRE)).clamp(0.0, 1.0),
-                };
+                let Shared { own, master, together } = shared;
                 let event = |channel, value| (tick, channel, EventKind::Control { controller, value });
                 if let Some(own) = own.get_mut(usize::from(channel)) {
                     *own = value;
@@ -77,20 +75,16 @@ mod tests {
 
     #[test]
     fn balances_add_up() {
-        let balance =
-            |tick, channel, place: u8| (tick, channel, EventKind::Control { controller: BALANCE, value: place.into() });
-        let in_steps = |(tick, channel, kind)| match kind {
-            EventKind::Control { controller, value } => {
-                (tick, channel, EventKind::Control { controller, value: libm::roundf(value * 127.0) })
-            }
-            kind => (tick, channel, kind),
-        };
-        let given = [(0, 2, 20), (1, ALL_CHANNELS, 74), (2, 2, 64), (3, 2, 120), (4, ALL_CHANNELS, 64)];
+        let given = [(0, 2, 20_u8), (1, ALL_CHANNELS, 74), (2, 2, 64), (3, 2, 120), (4, ALL_CHANNELS, 64)];
         let events = given.map(|(tick, channel, place)| {
-            (tick, channel, EventKind::Control { controller: BALANCE, value: f32::from(place as u8) / 127.0 })
+            (tick, channel, EventKind::Control { controller: BALANCE, value: f32::from(place) / 127.0 })
         });
+        let in_steps = |(tick, channel, kind)| match kind {
+            EventKind::Control { controller: BALANCE, value } => (tick, channel, libm::roundf(value * 127.0)),
+            other => panic!("{other:?}"),
+        };
         let spread: Vec<_> = spread(events.to_vec()).unwrap().into_iter().map(in_steps).collect();
-        assert_eq!([spread[0], spread[1], spread[3]], [balance(0, 2, 20), balance(1, 0, 74), balance(1, 2, 30)]);
-        assert_eq!([spread[17], spread[18], spread[21]], [balance(2, 2, 74), balance(3, 2, 127), balance(4, 2, 120)]);
+        assert_eq!([spread[0], spread[1], spread[3]], [(0, 2, 20.0), (1, 0, 74.0), (1, 2, 30.0)]);
+        assert_eq!([spread[17], spread[18], spread[21]], [(2, 2, 74.0), (3, 2, 127.0), (4, 2, 120.0)]);
     }
 }

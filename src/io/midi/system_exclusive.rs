@@ -1,6 +1,6 @@
 //! Converts system exclusive messages to events: resets, the master's volume and balance, and drum parts of GS and XG.
 
-use super::master::ALL_CHANNELS;
+use super::master::{ALL_CHANNELS, CENTRE};
 use crate::engine::EventKind;
 use crate::engine::banks::{BANK_SELECT, DRUM_BANK, DRUM_CHANNEL, MELODIC_BANK};
 use crate::engine::midi::DEFAULT_REVERB_SEND;
@@ -33,8 +33,8 @@ impl Default for DrumParts {
 }
 
 impl DrumParts {
-    /// The events that a message is converted to, with their channels: volumes and balances of [`ALL_CHANNELS`], bank selects, reverb sends and
-    /// program changes. `message` is the message after its byte F0. All other messages give no events.
+    /// The events that a message is converted to, with their channels: volumes and balances of [`ALL_CHANNELS`], bank selects,
+    /// reverb sends and program changes. `message` is the message after its byte F0. All other messages give no events.
     pub(super) fn system_exclusive(&mut self, message: &[u8]) -> Vec<(u8, EventKind)> {
         match message {
             [universal, _, id, 0x01..=0x03, ..] if [*universal, *id] == GENERAL_MIDI => self.reset(),
@@ -61,13 +61,13 @@ impl DrumParts {
         }
     }
 
-    /// Sets every channel to bank 0 and its reverb send to the default (General MIDI 2), and the master to full volume in the centre. The
-    /// sound of a channel changes only with its next program change.
+    /// Sets every channel to bank 0 and its reverb send to the default (General MIDI 2), and the master to full volume in the
+    /// centre. The sound of a channel changes only with its next program change.
     fn reset(&mut self) -> Vec<(u8, EventKind)> {
         *self = Self::default();
         let send = EventKind::Control { controller: REVERB_SEND, value: DEFAULT_REVERB_SEND };
         let channels = (0..16).flat_map(|channel| [(channel, bank(0)), (channel, send)]);
-        channels.chain(master(VOLUME, 1.0)).chain(master(BALANCE, 64.0 / 127.0)).collect()
+        channels.chain(master(VOLUME, 1.0)).chain(master(BALANCE, CENTRE)).collect()
     }
 
     /// Gives a channel drums or melodic sounds, at once. Yamaha's XG does so by part modes (08 nn 07: 0 is normal, others are drums),

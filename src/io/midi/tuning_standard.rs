@@ -46,7 +46,7 @@ impl Message {
         let master = |place, semitones| Some(Self { change: Change::Master { place, semitones }, sounding: true });
         let (universal, kind, data) = match message {
             [0x7F, _, 0x04, 0x03, fine, coarse, 0xF7] => {
-                return master(0, (f32::from(*coarse) * 128.0 + f32::from(*fine) - 8192.0) / 8192.0);
+                return master(0, offset(*coarse, *fine));
             }
             [0x7F, _, 0x04, 0x04, _, coarse, 0xF7] => return master(1, f32::from(*coarse) - 64.0),
             [universal @ (0x7E | 0x7F), _, 0x08, kind, data @ .., 0xF7] => (universal, kind, data),
@@ -81,8 +81,12 @@ fn octave(steps: &[u8]) -> Option<[f32; 12]> {
         return Some(cents.map(|cents| (f32::from(cents) - 64.0) / 100.0));
     }
     let steps: &[u8; 24] = steps.try_into().ok()?;
-    let fine = |step: usize| f32::from(steps[2 * step]) * 128.0 + f32::from(steps[2 * step + 1]);
-    Some(std::array::from_fn(|step| (fine(step) - 8192.0) / 8192.0))
+    Some(std::array::from_fn(|step| offset(steps[2 * step], steps[2 * step + 1])))
+}
+
+/// Semitones, −1 to 1, in two bytes.
+fn offset(high: u8, low: u8) -> f32 {
+    (f32::from(high) * 128.0 + f32::from(low) - 8192.0) / 8192.0
 }
 
 /// The pitches of all keys by the offsets of the octave's steps.
