@@ -83,6 +83,7 @@ fn reason(source: &std::io::Error) -> String {
     }
     match source.kind() {
         ErrorKind::NotFound => "No such file or folder: expected one that exists".to_owned(),
+        ErrorKind::NotADirectory => "Not a folder: expected one".to_owned(),
         ErrorKind::IsADirectory => "Is a folder: expected a file".to_owned(),
         ErrorKind::PermissionDenied => "Permission denied: expected a file that you may read or write".to_owned(),
         _ => source.to_string(),

@@ -2,21 +2,21 @@
 
 /// The line `y + slope · (x − middle)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Line {
+pub(crate) struct Line {
     /// The mean of the points' `x`, and of their `y`: the line goes through it.
-    pub(super) middle: f64,
-    pub(super) y: f64,
+    pub(crate) middle: f64,
+    pub(crate) y: f64,
     /// 0 if all points have the same `x`.
-    pub(super) slope: f64,
+    pub(crate) slope: f64,
     /// The sum of the squares of the distances from the middle.
-    pub(super) spread: f64,
+    pub(crate) spread: f64,
     /// The sum of the weights.
-    pub(super) weight: f64,
+    pub(crate) weight: f64,
 }
 
 impl Line {
     /// Through points of `x`, `y` and a weight; none if they weigh nothing.
-    pub(super) fn through(points: impl Iterator<Item = [f64; 3]> + Clone) -> Option<Self> {
+    pub(crate) fn through(points: impl Iterator<Item = [f64; 3]> + Clone) -> Option<Self> {
         let sum =
             |value: &dyn Fn(f64, f64) -> f64| points.clone().map(|[x, y, weight]| weight * value(x, y)).sum::<f64>();
         let weight = sum(&|_, _| 1.0);
@@ -30,11 +30,11 @@ impl Line {
     }
 
     /// Through the values at 0, 1, 2 and so on.
-    pub(super) fn through_values(values: &[f64]) -> Option<Self> {
+    pub(crate) fn through_values(values: &[f64]) -> Option<Self> {
         Self::through(values.iter().enumerate().map(|(n, value)| [n as f64, *value, 1.0]))
     }
 
-    pub(super) fn at(&self, x: f64) -> f64 {
+    pub(crate) fn at(&self, x: f64) -> f64 {
         self.y + self.slope * (x - self.middle)
     }
 }

@@ -12,7 +12,7 @@ pub mod digest;
 pub mod figure;
 pub mod fit;
 pub mod level;
-mod line;
+pub(crate) mod line;
 pub mod log_mel;
 #[cfg(feature = "analysis")]
 pub mod measures;

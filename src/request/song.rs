@@ -5,7 +5,7 @@ use crate::engine::banks::DRUM_CHANNEL;
 use crate::engine::midi::controller::PORTAMENTO_CONTROL;
 use crate::engine::midi::seven_bits;
 use crate::error::{Error, Result};
-use crate::io::{Inputs, MidiFile, Reading, Song, SongTime};
+use crate::io::{Inputs, MidiFile, Reading, Song, SongEvent, SongTime};
 use crate::text::counted;
 use std::path::Path;
 
@@ -74,11 +74,22 @@ impl SongRequest {
         };
         let (from, to) = (seconds("--from", self.from)?.unwrap_or(0.0), seconds("--to", self.to)?);
         if let Some(to) = to {
+            if to > song.seconds {
+                warn(&format!("--to: the song ends before {to:.3} s, at {:.3} s", song.seconds));
+            }
             song.end_at(to);
         }
         if from > 0.0 && from >= song.seconds {
             let message = format!("{from:.3} s is not before the end, at {:.3} s", song.seconds);
             return Err(Error::value("--from", message));
+        }
+        let is_strike = |event: &&SongEvent| matches!(event.kind, EventKind::NoteOn { .. });
+        let last = song.events.iter().rfind(is_strike);
+        if from > 0.0 && last.is_some_and(|last| last.seconds < from) {
+            warn(&format!(
+                "no note begins from {from:.3} s to {:.3} s: expected another part of the song",
+                song.seconds
+            ));
         }
         Ok((song, from))
     }

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::io::Journal;
 use crate::preset::Playable;
 use serde_json::{Value, json};
+use std::fs::Metadata;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
@@ -14,6 +15,8 @@ pub(super) struct Line {
     /// The file, relative to the folder.
     pub(super) file: String,
     pub(super) frames: u64,
+    /// Its length, by which a file is told that was cut off or replaced since.
+    pub(super) bytes: u64,
     /// The first frame of its loop, and the one after the last.
     pub(super) looped: Option<[u64; 2]>,
     /// Seconds in which it falls by 60 dB when the key is let go; none if it rings on.
@@ -37,6 +40,7 @@ impl Line {
         Some(Self {
             file: value["file"].as_str()?.to_owned(),
             frames: value["frames"].as_u64()?,
+            bytes: value["bytes"].as_u64()?,
             looped: ends(&value["loop"]),
             release: value["release"].as_f64(),
             fall: value["fall"].as_f64(),
@@ -72,21 +76,29 @@ impl List {
         self.settings.iter().try_for_each(|settings| self.write(settings))
     }
 
-    /// The line of a file, if it was finished before and is there.
+    /// The line of a file, if it was finished before and is there as it was.
     pub(super) fn find(&self, folder: &Path, file: &str) -> Option<Line> {
-        self.known.iter().find(|line| line.file == file && folder.join(file).is_file()).cloned()
+        let is_there = |line: &&Line| line.file == file && bytes(&folder.join(file)) == Some(line.bytes);
+        // A file that was made again has another line, further down.
+        self.known.iter().rev().find(is_there).cloned()
     }
 
     /// Adds a finished sample.
     pub(super) fn add(&self, line: &Line) -> Result<()> {
-        let Line { file, frames, looped, release, fall } = line;
-        let line = json!({ "file": file, "frames": frames, "loop": looped, "release": release, "fall": fall });
+        let Line { file, frames, bytes, looped, release, fall } = line;
+        let line =
+            json!({ "file": file, "frames": frames, "bytes": bytes, "loop": looped, "release": release, "fall": fall });
         self.write(&line.to_string())
     }
 
     fn write(&self, line: &str) -> Result<()> {
         self.journal.lock().unwrap_or_else(PoisonError::into_inner).write(line)
     }
+}
+
+/// The length of a file; none if there is no such file.
+pub(super) fn bytes(path: &Path) -> Option<u64> {
+    path.metadata().ok().filter(Metadata::is_file).map(|about| about.len())
 }
 
 /// All that a sample depends on.

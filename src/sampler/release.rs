@@ -2,6 +2,7 @@
 
 use super::settings::Sampling;
 use super::strike::strike;
+use crate::analysis::line::Line;
 use crate::error::Result;
 use crate::sound::Kit;
 use std::sync::Arc;
@@ -15,26 +16,29 @@ const BLOCK: f64 = 0.005;
 const FALL_DB: f64 = 40.0;
 /// Shortest release in seconds, so that it does not click, and the longest.
 const RANGE: (f64, f64) = (0.005, 30.0);
+/// The energy of a block of silence, in dB.
+const SILENT_DB: f64 = -120.0;
 
-/// The time in seconds in which the sound falls by 60 dB after the key is let go; none if it is silent by then.
+/// The time in seconds in which the sound falls by 60 dB after the key is let go, by the line through the levels of all blocks until it has
+/// fallen by 40 dB; none if it is silent by then.
 pub(super) fn seconds(sampling: &Sampling, kit: &Arc<Kit>, key: u8, velocity: u8) -> Result<Option<f64>> {
     let sound = strike(sampling, kit, key, velocity, 0, [HELD, HEARD])?;
-    let rate = f64::from(sampling.rate);
+    Ok(fall_time(&sound, sampling.rate))
+}
+
+fn fall_time(sound: &[Vec<f32>; 2], rate: u32) -> Option<f64> {
+    let rate = f64::from(rate);
     let (held, block) = ((HELD * rate) as usize, ((BLOCK * rate) as usize).max(1));
-    let power = |at: usize| -> f64 {
+    let level = |at: usize| -> f64 {
         let samples = sound.iter().flat_map(|side| side.iter().skip(at).take(block));
-        samples.map(|sample| f64::from(*sample) * f64::from(*sample)).sum()
+        10.0 * libm::log10(samples.map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>().max(1e-30))
     };
-    let level = power(held.saturating_sub(block));
-    if level <= 0.0 {
-        return Ok(None);
-    }
-    let fallen = |at: usize| 10.0 * libm::log10(level / power(at).max(f64::MIN_POSITIVE));
-    let blocks = held..sound[0].len().saturating_sub(block);
-    let end = blocks.clone().step_by(block).find(|at| fallen(*at) >= FALL_DB);
-    let at = end.unwrap_or(blocks.end);
-    let (time, fall) = ((at - held) as f64 / rate + BLOCK, fallen(at).max(0.1));
-    Ok(Some((60.0 * time / fall).clamp(RANGE.0, RANGE.1)))
+    let last = sound[0].len().saturating_sub(block);
+    let levels: Vec<f64> = (held..=last).step_by(block).map(level).collect();
+    let first = *levels.first().filter(|level| **level > SILENT_DB)?;
+    let fallen = levels.iter().take_while(|level| **level > first - FALL_DB).count().max(2).min(levels.len());
+    let fall = -Line::through_values(&levels[..fallen])?.slope * rate / block as f64;
+    Some(if fall > 0.0 { (60.0 / fall).clamp(RANGE.0, RANGE.1) } else { RANGE.1 })
 }
 
 /// The most dB a second by which a held sound is said to fall: SFZ has no more.
@@ -59,6 +63,21 @@ pub(super) fn fall(sound: &[Vec<f32>; 2], rate: u32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_time_of_a_fall_is_that_of_its_line() {
+        for time in [0.01, 0.1, 0.5, 3.0] {
+            let sample = |n: u32| {
+                let t = f64::from(n) / 8000.0;
+                let gain = libm::pow(10.0, -3.0 * (t - HELD).max(0.0) / time);
+                (gain * libm::sin(std::f64::consts::TAU * 110.0 * t)) as f32
+            };
+            let side: Vec<f32> = (0..18_400).map(sample).collect();
+            let found = fall_time(&[side.clone(), side], 8000).unwrap();
+            assert!((found - time).abs() < 0.05 * time.max(0.02), "{time}: {found}");
+        }
+        assert_eq!(fall_time(&[vec![0.0; 8000], vec![0.0; 8000]], 8000), None);
+    }
 
     #[test]
     fn the_fall_of_a_held_sound_is_measured() {

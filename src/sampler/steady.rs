@@ -1,61 +1,77 @@
-//! Finds the loop of a steady sound: two places at which it is the same.
+//! Finds the loop of a sustained sound, and fades its end over into what precedes its beginning.
 
 use crate::io::Loop;
 
-/// Share of a sound that passes before its loop may begin: the attack.
-const ATTACK: f64 = 0.4;
-/// Seconds of the blocks whose levels are compared, and most dB by which they may differ.
-const BLOCK: f64 = 0.05;
+/// Shares of a sound that pass before its loop may begin: the attack is over by then in most.
+const STARTS: [f64; 3] = [0.3, 0.4, 0.5];
+/// Most dB by which the halves of what follows the attack may differ: a loop would hold what falls.
 const STEADY_DB: f64 = 1.0;
-/// Shortest loop in seconds. Shorter ones sound like a tone of their own.
-const SHORTEST: f64 = 0.25;
-/// Seconds in which the sound must be the same at both ends of the loop.
-const SAME: f64 = 0.02;
-/// Largest energy of the difference relative to that of the sound: −45 dB, which is not heard as a step.
-const DIFFERENCE: f64 = 3.2e-5;
+/// Shortest loop in seconds. Shorter ones sound like a flutter.
+const SHORTEST: f64 = 0.5;
+/// Seconds in which the end fades over.
+const FADE: f64 = 0.05;
+/// Least correlation of what fades over into each other. Of less, partials would be heard to cancel.
+const LEAST_LIKENESS: f64 = 0.7;
+/// Every how many frames likeness is looked at. What ensembles differ by lies far below the 3 kHz that this leaves at 48 kHz.
+const STRIDE: usize = 8;
 
-/// The loop of a sound at a rate in Hz; none if it is not steady or does not come back to itself.
-pub(super) fn find(sound: &[Vec<f32>; 2], rate: u32) -> Option<Loop> {
+/// The loop of a sound at a rate in Hz; none if it is not steady or never comes back to what it was. With a loop, the sound ends where
+/// the loop does, and its last frames lead to the loop’s first.
+pub(super) fn find(sound: &mut [Vec<f32>; 2], rate: u32) -> Option<Loop> {
     let frames = sound[0].len();
     let count = |seconds: f64| (seconds * f64::from(rate)) as usize;
-    let (start, same) = ((ATTACK * frames as f64) as usize, count(SAME));
-    if !is_steady(sound, start, count(BLOCK)) || frames < start + count(SHORTEST) + same {
+    let (fade, shortest) = (count(FADE), count(SHORTEST));
+    let starts = STARTS.map(|share| (share * frames as f64) as usize);
+    if fade == 0 || starts[0] < fade || !is_steady(sound, starts[0]) {
         return None;
     }
-    let energy = |at: usize| -> f64 { sound.iter().flat_map(|side| &side[at..at + same]).map(|x| square(*x)).sum() };
-    let wanted = energy(start);
-    // Most candidates are given up after a few frames.
-    let difference = |end: usize, limit: f64| {
-        let mut sum = 0.0;
-        for n in 0..same {
-            sum += sound.iter().map(|side| square(side[start + n] - side[end + n])).sum::<f64>();
-            if sum >= limit {
-                return None;
-            }
+    let candidates = starts.iter().flat_map(|start| (start + shortest..=frames).map(|end| [*start, end]));
+    let best = candidates.map(|ends| (likeness(sound, ends, fade, STRIDE), ends)).max_by(|a, b| a.0.total_cmp(&b.0));
+    let [start, end] = best?.1;
+    let likeness = likeness(sound, [start, end], fade, 1);
+    if likeness < LEAST_LIKENESS {
+        return None;
+    }
+    for side in sound {
+        for n in 0..fade {
+            let [into, from] = gains((n + 1) as f64 / fade as f64, likeness);
+            let [a, b] = [start, end].map(|at| f64::from(side[at - fade + n]));
+            side[end - fade + n] = (into * a + from * b) as f32;
         }
-        Some(sum)
-    };
-    let (mut best, mut end) = (DIFFERENCE * wanted, None);
-    for candidate in (start + count(SHORTEST)..frames - same).rev() {
-        if let Some(sum) = difference(candidate, best) {
-            (best, end) = (sum, Some(candidate));
+        side.truncate(end);
+    }
+    Some(Loop { start: start as u64, end: end as u64 })
+}
+
+/// The correlation of the frames before both ends of a loop, less if one is louder: 1 if they are the same.
+fn likeness(sound: &[Vec<f32>; 2], [start, end]: [usize; 2], fade: usize, stride: usize) -> f64 {
+    let (mut product, mut energy) = (0.0, 0.0);
+    for side in sound {
+        let [a, b] = [start, end].map(|at| side[at - fade..at].iter().step_by(stride).map(|x| f64::from(*x)));
+        for (a, b) in a.zip(b) {
+            product += a * b;
+            energy += a * a + b * b;
         }
     }
-    end.map(|end| Loop { start: start as u64, end: end as u64 })
+    if energy > 0.0 { 2.0 * product / energy } else { 0.0 }
 }
 
-fn square(sample: f32) -> f64 {
-    f64::from(sample) * f64::from(sample)
+/// The gains at a place from 0 to 1 in a fade between sounds of this correlation, which together are always as loud.
+fn gains(place: f64, likeness: f64) -> [f64; 2] {
+    let rest = 1.0 - place;
+    let loudness = libm::sqrt(place * place + rest * rest + 2.0 * likeness * place * rest);
+    [place / loudness, rest / loudness]
 }
 
-/// Whether the levels of all blocks from a frame on are alike.
-fn is_steady(sound: &[Vec<f32>; 2], start: usize, block: usize) -> bool {
-    let energies = (start..sound[0].len().saturating_sub(block))
-        .step_by(block.max(1))
-        .map(|at| sound.iter().flat_map(|side| &side[at..at + block]).map(|sample| square(*sample)).sum::<f64>());
-    let (least, most) =
-        energies.fold((f64::INFINITY, 0.0_f64), |(least, most), energy| (least.min(energy), most.max(energy)));
-    most > 0.0 && 10.0 * libm::log10(most / least) < STEADY_DB
+/// Whether both halves from a frame on are as loud.
+fn is_steady(sound: &[Vec<f32>; 2], start: usize) -> bool {
+    let half = (sound[0].len() - start) / 2;
+    let level = |at: usize| {
+        let samples = sound.iter().flat_map(|side| &side[at..at + half]).map(|sample| f64::from(*sample));
+        10.0 * libm::log10(samples.map(|sample| sample * sample).sum())
+    };
+    // Silence is −∞ dB, and no difference of it is small.
+    (level(start) - level(start + half)).abs() < STEADY_DB
 }
 
 #[cfg(test)]
@@ -75,19 +91,25 @@ mod tests {
     }
 
     #[test]
-    fn a_steady_sound_has_a_loop_whose_ends_are_the_same() {
-        let sound = tone(0.0, 0.0);
-        let Loop { start, end } = find(&sound, 48_000).unwrap();
-        for n in 0..480 {
-            let [a, b] = [start, end].map(|at| sound[0][at as usize + n]);
-            assert!((a - b).abs() < 2e-3, "{a} {b}");
+    fn a_steady_sound_goes_on_after_its_loop_as_before_it() {
+        for noise in [0.0, 0.05] {
+            let before = tone(0.0, noise);
+            let mut sound = before.clone();
+            let Loop { start, end } = find(&mut sound, 48_000).unwrap();
+            let (start, end) = (start as usize, end as usize);
+            assert!(end - start >= 24_000 && sound[0].len() == end);
+            assert_eq!(sound[0][end - 1], before[0][start - 1], "the last frame leads to the loop’s first");
+            let power = |side: &[f32]| side.iter().map(|x| f64::from(*x) * f64::from(*x)).sum::<f64>();
+            let ratio = power(&sound[0][end - 2400..]) / power(&before[0][end - 2400..end]);
+            assert!((ratio - 1.0).abs() < 0.03, "the fade has a level of its own: {ratio}");
         }
-        assert!(end - start >= 12_000);
     }
 
     #[test]
-    fn what_decays_or_hisses_has_none() {
-        assert_eq!(find(&tone(1.0, 0.0), 48_000), None);
-        assert_eq!(find(&tone(0.0, 0.05), 48_000), None);
+    fn what_decays_hisses_or_is_silent_has_none() {
+        assert_eq!(find(&mut tone(1.0, 0.0), 48_000), None);
+        assert_eq!(find(&mut tone(1e9, 0.3), 48_000), None);
+        assert_eq!(find(&mut tone(1e9, 0.0), 48_000), None);
+        assert_eq!(find(&mut [vec![], vec![]], 48_000), None);
     }
 }

@@ -1,6 +1,6 @@
 //! Renders one sample, cuts it, and finds its loop.
 
-use super::list::Line;
+use super::list::{self, Line};
 use super::plan::{Part, Plan, Take};
 use super::settings::Sampling;
 use super::strike::strike;
@@ -34,20 +34,22 @@ pub(super) fn make(sampling: &Sampling, plan: &Plan, kit: &Arc<Kit>, take: &Take
     let end = sound.iter().filter_map(|side| side.iter().rposition(is_audible)).max().map_or(1, |last| last + 1);
     sound.iter_mut().for_each(|side| side.truncate(end));
     let may_loop = end == whole && !zone.rings_on && fall.is_none();
-    let looped = if may_loop { steady::find(&sound, sampling.rate) } else { None };
+    let looped = if may_loop { steady::find(&mut sound, sampling.rate) } else { None };
     if end == whole && looped.is_none() {
         fade(&mut sound, (FADE * f64::from(sampling.rate)) as usize);
     }
+    let frames = sound[0].len() as u64;
     let release = match zone.rings_on || fall.is_some() {
         true => None,
         false => release::seconds(sampling, kit, zone.key, velocity)?,
     };
     let file = plan.file(take, sampling);
+    let path = sampling.folder.join(&file);
     // A run that is resumed replaces what an interrupted one left without a line.
-    let mut output = Output::create(&Target::Path(sampling.folder.join(&file)), sampling.resume, inputs)?;
+    let mut output = Output::create(&Target::Path(path.clone()), sampling.resume, inputs)?;
     let format = WavFormat { sample_rate: sampling.rate, channels: 2, samples: sampling.bits };
     let write = |output: &mut Output| {
-        let (name, frames) = (output.name().to_owned(), end as u64);
+        let name = output.name().to_owned();
         let mut writer = match &looped {
             None => WavWriter::new(output.stream(), &name, format, None, Some(frames))?,
             Some(looped) => WavWriter::looped(output.stream(), &name, format, None, frames, looped, zone.key)?,
@@ -58,7 +60,8 @@ pub(super) fn make(sampling: &Sampling, plan: &Plan, kit: &Arc<Kit>, take: &Take
     flac::write_as(sampling.format, &mut output, write)?;
     output.commit()?;
     let looped = looped.map(|Loop { start, end }| [start, end]);
-    Ok(Line { file, frames: end as u64, looped, release, fall })
+    let bytes = list::bytes(&path).unwrap_or(0);
+    Ok(Line { file, frames, bytes, looped, release, fall })
 }
 
 /// Fades out the last frames.

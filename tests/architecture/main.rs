@@ -25,7 +25,7 @@ const ALLOWED: &[Row] = &[
     ("io", &["dsp", "engine", "error", "units"]),
     ("request", &["engine", "error", "io", "params", "preset", "render", "sound", "text", "units"]),
     ("batch", &["analysis", "dsp", "error", "io", "params", "render", "request"]),
-    ("sampler", &["engine", "error", "io", "params", "preset", "render", "sound", "text"]),
+    ("sampler", &["analysis", "engine", "error", "io", "params", "preset", "render", "sound", "text"]),
     ("render", &["dsp", "engine", "error", "io", "params", "patch", "preset", "sound", "text", "units"]),
     ("realtime", &["engine", "error", "io", "params", "patch", "render", "sound", "units"]),
     ("figure", &["error", "text"]),

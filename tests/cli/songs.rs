@@ -24,6 +24,11 @@ fn lenient_reading_plays_what_strict_reading_refuses() {
     let offset = [&[0, 0xff, 0x54, 5, 99, 99, 99, 99, 99][..], &good].concat();
     let whole = raw(&good);
     let rmid = [b"RIFF\0\0\0\0RMIDdata", &(whole.len() as u32).to_le_bytes()[..], &whole].concat();
+    // Volume 127 is what a channel has.
+    let beyond = [&[0, 0xb0, 7, 200][..], &good].concat();
+    let cable = [&[0, 0xf8][..], &good].concat();
+    let long = [&[0x80, 0x80, 0x80, 0x80][..], &good].concat();
+    let kind = [&whole[..9], &[9], &whole[10..]].concat();
     let base = "--bits 32f --force -o";
     sandbox.write("good.mid", &whole);
     sandbox.succeeds(&format!("render good.mid --lenient {base} good.wav"));
@@ -36,6 +41,10 @@ fn lenient_reading_plays_what_strict_reading_refuses() {
             "track 1, bar 1, beat 2 (tick 96, byte 33): the file is cut off: 11 of the track's 12 bytes are there",
         ),
         ("rmid", rmid, "an RMID file of size 0"),
+        ("beyond", raw(&beyond), "track 1, bar 1, beat 1 (tick 0, byte 22): "),
+        ("cable", raw(&cable), "track 1, bar 1, beat 1 (tick 0, byte 22): "),
+        ("long", raw(&long), "track 1, bar 1, beat 1 (tick 0, byte 22): "),
+        ("kind", kind, "a MIDI file of type 9: expected type 0, 1 or 2"),
     ] {
         sandbox.write("in.mid", bytes);
         sandbox.fails("render in.mid -o out.wav", 1, &format!("in.mid: {message}"));
@@ -54,6 +63,10 @@ fn a_song_without_notes_is_told() {
     let sandbox = Sandbox::new();
     sandbox.write("in.mid", song(&[end(1)]));
     assert!(said(&sandbox, "render in.mid -o out.wav").contains("warning: there are no notes to play"));
+    sandbox.write("in.mid", song(&[note_on(0, 0, 60), end(960)]));
+    let part = said(&sandbox, "render in.mid --from 0.2s --to 9s -o part.wav");
+    assert!(part.contains("warning: --to: the song ends before 9.000 s, at "), "{part}");
+    assert!(part.contains("warning: no note begins from 0.200 s to "), "{part}");
 }
 
 #[test]

@@ -38,11 +38,11 @@ impl<'a> Container<'a> {
     /// Splits a file into its chunks. If `lenient` is true, wrong sizes and track counts are repaired.
     pub(super) fn open(file: &'a [u8], lenient: bool) -> Result<Self, String> {
         let mut repairs = Vec::new();
-        let mut repair = |fault: String| {
+        let mut repair = |fault: String, remedy: &str| {
             if !lenient || repairs.len() >= MOST_REPAIRS {
                 return Err(fault);
             }
-            repairs.push(fault);
+            repairs.push(format!("{fault}: {remedy}"));
             Ok(())
         };
         let song = song_in(file, &mut repair)?;
@@ -59,7 +59,10 @@ impl<'a> Container<'a> {
             let rest = &file[at.min(file.len())..];
             if lenient && !starts_chunk(rest) {
                 let Some(junk) = find(rest, b"MTrk") else { break };
-                repair(format!("after track {}, byte {at}: {junk} bytes belong to no track: left out", tracks.len()))?;
+                repair(
+                    format!("after track {}, byte {at}: {junk} bytes belong to no track", tracks.len()),
+                    "left out",
+                )?;
                 at += junk;
             }
             let Some(chunk) = next_chunk(file, &mut at, u32::from_be_bytes) else { break };
@@ -68,9 +71,8 @@ impl<'a> Container<'a> {
                     let mut track = chunk.into_track();
                     if lenient && let Some(length) = real_length(&file[track.start..], track.promised) {
                         let (number, said) = (tracks.len() + 1, track.promised);
-                        repair(format!(
-                            "track {number} says that it has {said} bytes: it has {length} up to its end mark"
-                        ))?;
+                        let fault = format!("track {number} says that it has {said} bytes");
+                        repair(fault, &format!("it has {length} up to its end mark"))?;
                         (track.promised, at) = (length, track.start + length);
                         track.bytes = &file[track.start..at];
                     }
@@ -85,14 +87,17 @@ impl<'a> Container<'a> {
             if tracks.is_empty() {
                 return Err(fault);
             }
-            repair(fault)?;
+            repair(fault, "these are read")?;
         }
         Ok(Self { header, tracks, repairs })
     }
 }
 
 /// The bytes of the song in the file, from its header on.
-fn song_in<'a>(file: &'a [u8], repair: &mut impl FnMut(String) -> Result<(), String>) -> Result<&'a [u8], String> {
+fn song_in<'a>(
+    file: &'a [u8],
+    repair: &mut impl FnMut(String, &str) -> Result<(), String>,
+) -> Result<&'a [u8], String> {
     if file.starts_with(b"MThd") {
         return Ok(file);
     }
@@ -100,14 +105,14 @@ fn song_in<'a>(file: &'a [u8], repair: &mut impl FnMut(String) -> Result<(), Str
         return Err(format!("{}: expected a Standard MIDI File (.mid)", describe(file)));
     }
     if file[4..8] == [0; 4] {
-        repair("an RMID file of size 0".to_owned())?;
+        repair("an RMID file of size 0".to_owned(), "read to its end")?;
     }
     let mut at = 12;
     while let Some(chunk) = next_chunk(file, &mut at, u32::from_le_bytes) {
         if &chunk.id == b"data" {
             let start = chunk.start;
             if chunk.promised == 0 {
-                repair("an RMID file whose song has the size 0".to_owned())?;
+                repair("an RMID file whose song has the size 0".to_owned(), "read to its end")?;
             }
             // The end of the song follows from its own chunks.
             let song = &file[start..];
@@ -172,13 +177,13 @@ fn find(bytes: &[u8], pattern: &[u8]) -> Option<usize> {
 fn read_header(
     song: &[u8],
     data: &[u8],
-    repair: &mut impl FnMut(String) -> Result<(), String>,
+    repair: &mut impl FnMut(String, &str) -> Result<(), String>,
 ) -> Result<(Header, usize), String> {
     let mut chunk = song[..8 + data.len()].to_vec();
     match u16::from_be_bytes([data[0], data[1]]) {
         0..=2 => {}
         kind => {
-            repair(format!("a MIDI file of type {kind}: expected type 0, 1 or 2"))?;
+            repair(format!("a MIDI file of type {kind}: expected type 0, 1 or 2"), "read as type 1")?;
             chunk[8..10].copy_from_slice(&[0, 1]);
         }
     }

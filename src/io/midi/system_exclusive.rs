@@ -1,10 +1,9 @@
 //! Converts system exclusive messages to events: resets, the master's volume and balance, and drum parts of GS and XG.
 
-use super::master::{ALL_CHANNELS, CENTRE};
+use super::master::ALL_CHANNELS;
 use crate::engine::EventKind;
 use crate::engine::banks::{BANK_SELECT, DRUM_BANK, DRUM_CHANNEL, MELODIC_BANK};
-use crate::engine::midi::DEFAULT_REVERB_SEND;
-use crate::engine::midi::controller::{BALANCE, REVERB_SEND, VOLUME};
+use crate::engine::midi::controller::{BALANCE, RESET, VOLUME};
 
 /// Bytes of reset messages, without the first byte F0 and without device numbers: General MIDI 1 and 2 on, and off
 /// (Universal Non-Real Time messages), and Yamaha's XG System On.
@@ -33,12 +32,14 @@ impl Default for DrumParts {
 }
 
 impl DrumParts {
-    /// The events that a message is converted to, with their channels: volumes and balances of [`ALL_CHANNELS`], bank selects,
-    /// reverb sends and program changes. `message` is the message after its byte F0. All other messages give no events.
+    /// The events that a message is converted to, with their channels: volumes, balances and resets of [`ALL_CHANNELS`], bank
+    /// selects and program changes. `message` is the message after its byte F0. All other messages give no events.
     pub(super) fn system_exclusive(&mut self, message: &[u8]) -> Vec<(u8, EventKind)> {
         match message {
-            [universal, _, id, 0x01..=0x03, ..] if [*universal, *id] == GENERAL_MIDI => self.reset(),
-            [0x43, _, rest @ ..] if rest.starts_with(&XG_RESET) => self.reset(),
+            _ if is_reset(message) => {
+                *self = Self::default();
+                master(RESET, 0.0)
+            }
             [0x7F, _, first, second, fine, coarse, 0xF7] if [*first, *second] == MASTER_VOLUME => {
                 master(VOLUME, (f32::from(*coarse) * 128.0 + f32::from(*fine)) / 16_383.0)
             }
@@ -50,7 +51,6 @@ impl DrumParts {
                 master(VOLUME, f32::from(*volume) / 127.0)
             }
             [0x41, _, model, set, rest @ ..] if [*model, *set] == GS_SET => match rest {
-                _ if rest.starts_with(&GS_RESET) => self.reset(),
                 [address @ .., volume, _, 0xF7] if *address == GS_MASTER_VOLUME => {
                     master(VOLUME, f32::from(*volume) / 127.0)
                 }
@@ -61,15 +61,6 @@ impl DrumParts {
         }
     }
 
-    /// Sets every channel to bank 0 and its reverb send to the default (General MIDI 2), and the master to full volume in the
-    /// centre. The sound of a channel changes only with its next program change.
-    fn reset(&mut self) -> Vec<(u8, EventKind)> {
-        *self = Self::default();
-        let send = EventKind::Control { controller: REVERB_SEND, value: DEFAULT_REVERB_SEND };
-        let channels = (0..16).flat_map(|channel| [(channel, bank(0)), (channel, send)]);
-        channels.chain(master(VOLUME, 1.0)).chain(master(BALANCE, CENTRE)).collect()
-    }
-
     /// Gives a channel drums or melodic sounds, at once. Yamaha's XG does so by part modes (08 nn 07: 0 is normal, others are drums),
     /// and part `nn` is channel `nn` (XG specification 1.26, 1996). A channel that has them already keeps its program.
     fn set(&mut self, channel: u8, has_drums: bool) -> Vec<(u8, EventKind)> {
@@ -77,6 +68,16 @@ impl DrumParts {
         self.0 = before & !(1 << channel) | u16::from(has_drums) << channel;
         let bank = (channel, bank(if has_drums { DRUM_BANK } else { MELODIC_BANK }));
         if self.0 == before { vec![bank] } else { vec![bank, (channel, EventKind::Program(0))] }
+    }
+}
+
+/// Whether a message, after its byte F0, sets everything back: General MIDI on and off, XG System On, and GS reset.
+pub(super) fn is_reset(message: &[u8]) -> bool {
+    match message {
+        [universal, _, id, 0x01..=0x03, ..] => [*universal, *id] == GENERAL_MIDI,
+        [0x43, _, rest @ ..] => rest.starts_with(&XG_RESET),
+        [0x41, _, model, set, rest @ ..] => [*model, *set] == GS_SET && rest.starts_with(&GS_RESET),
+        _ => false,
     }
 }
 
@@ -124,7 +125,7 @@ mod tests {
             &[0x41, 0x10, 0x42, 0x12, 0x40, 0x00, 0x7F, 0x00, 0x41, 0xF7],
             &[0x43, 0x10, 0x4C, 0x00, 0x00, 0x7E, 0x00, 0xF7],
         ] {
-            assert_eq!(send(reset).len(), 34);
+            assert_eq!(send(reset), master(RESET, 0.0));
         }
         assert!(send(&[0x7E, 0x7F, 0x06, 0x01, 0xF7]).is_empty(), "an identity request");
         assert!(send(&[]).is_empty());

@@ -226,10 +226,14 @@ fn lenient_reading_repairs_what_it_knows_and_says_so() {
                 "track 1, bar 1, beat 1 (tick 0, byte 22): the tempo is 0 µs per quarter note: expected at least 1: left out",
             ],
         ),
-        (miscounted, &[60], &["not a whole MIDI file: it declares 3 tracks and has 1"]),
-        (uncounted, &[60], &["not a whole MIDI file: it declares 0 tracks and has 1"]),
-        (rmid(0, 26), &[60], &["an RMID file of size 0"]),
-        (rmid(0, 0), &[60], &["an RMID file of size 0", "an RMID file whose song has the size 0"]),
+        (miscounted, &[60], &["not a whole MIDI file: it declares 3 tracks and has 1: these are read"]),
+        (uncounted, &[60], &["not a whole MIDI file: it declares 0 tracks and has 1: these are read"]),
+        (rmid(0, 26), &[60], &["an RMID file of size 0: read to its end"]),
+        (
+            rmid(0, 0),
+            &[60],
+            &["an RMID file of size 0: read to its end", "an RMID file whose song has the size 0: read to its end"],
+        ),
     ] {
         let refused = Song::parse(&bytes, "x").unwrap_err().to_string();
         assert!(refused.ends_with("; add --lenient to read it nevertheless"), "{refused}");
@@ -318,7 +322,7 @@ fn lenient_reading_finds_all_tracks() {
             file(1, &[&track(60, 11), &[1, 2, 3], &track(61, 11)]),
             "after track 1, byte 33: 3 bytes belong to no track: left out",
         ),
-        (file(9, &[&track(60, 11), &track(61, 11)]), "a MIDI file of type 9: expected type 0, 1 or 2"),
+        (file(9, &[&track(60, 11), &track(61, 11)]), "a MIDI file of type 9: expected type 0, 1 or 2: read as type 1"),
     ] {
         let (song, repairs) = Song::parse_leniently(&bytes, "x").unwrap();
         assert_eq!((keys(&song), repairs), (vec![60, 61], vec![repair.to_owned()]));

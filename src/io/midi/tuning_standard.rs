@@ -5,6 +5,7 @@
 //! keys of its channels at once; as a dump it is a program. Requests of dumps change nothing. Drums on channel 10 are not tuned.
 
 use super::limits::MAX_EVENTS;
+use super::system_exclusive::is_reset;
 use crate::engine::EventKind;
 use crate::engine::banks::DRUM_CHANNEL;
 use crate::engine::midi::controller::{DATA, NRPN, NRPN_FINE, RESET, RPN, RPN_FINE};
@@ -30,6 +31,8 @@ pub(super) enum Change {
     Master { place: usize, semitones: f32 },
     /// Semitones by which each step of the octave, from C, is off; on the channels whose bits are set.
     Octave { channels: u16, offsets: [f32; 12] },
+    /// All channels and the master are as they were at first; what tuning programs are stays.
+    Reset,
 }
 
 /// A tuning message.
@@ -45,6 +48,7 @@ impl Message {
     pub(super) fn read(message: &[u8]) -> Option<Self> {
         let master = |place, semitones| Some(Self { change: Change::Master { place, semitones }, sounding: true });
         let (universal, kind, data) = match message {
+            _ if is_reset(message) => return Some(Self { change: Change::Reset, sounding: true }),
             [0x7F, _, 0x04, 0x03, fine, coarse, 0xF7] => {
                 return master(0, offset(*coarse, *fine));
             }
@@ -94,7 +98,8 @@ fn stretched(offsets: [f32; 12]) -> Pitches {
     std::array::from_fn(|key| key as f32 + offsets[key % 12])
 }
 
-/// The pitches of a bulk dump, after its program: sixteen characters, three bytes for each key, and a checksum.
+/// The pitches of a bulk dump, after its program: sixteen characters, three bytes for each key, and a checksum, which is not
+/// looked at: there are programs that count other bytes in.
 fn dump(data: &[u8]) -> Option<Vec<(u8, f32)>> {
     let pitches = data.get(NAME..NAME + 3 * 128)?;
     Some((0..).zip(pitches.chunks_exact(3)).filter_map(|(key, bytes)| Some((key, pitch(bytes)?))).collect())
@@ -184,6 +189,11 @@ impl Device {
                 self.master[*place] = *semitones;
                 let wanted = self.wanted;
                 (0..).zip(&wanted).try_for_each(|(channel, pitches)| self.tune(tick, channel, pitches, *sounding))
+            }
+            Change::Reset => {
+                (self.master, self.playing) = ([0.0; 2], [0; 16]);
+                let equal = self.programs.get(&0).copied().unwrap_or_else(equal);
+                (0..16).try_for_each(|channel| self.tune(tick, channel, &equal, *sounding))
             }
             Change::Octave { channels, offsets } => {
                 let pitches = stretched(*offsets);
@@ -304,11 +314,13 @@ mod tests {
         let messages = [
             (5, Message::read(&[0x7F, 0x7F, 4, 4, 0, 66, 0xF7]).unwrap()),
             (6, Message::read(&[0x7F, 0x7F, 4, 3, 0, 0x20, 0xF7]).unwrap()),
+            (7, Message::read(&[0x7E, 0x7F, 9, 1, 0xF7]).unwrap()),
         ];
         let events = spread(vec![control(9, 7, 100)], &messages).unwrap();
         let tuned = tuned(&events);
-        assert_eq!((tuned.len(), tuned[60]), (2 * 15 * 128, (5, 0, 60, 62.0, true)));
+        assert_eq!((tuned.len(), tuned[60]), (3 * 15 * 128, (5, 0, 60, 62.0, true)));
         assert_eq!((tuned[15 * 128 + 60], tuned[15 * 128 + 9 * 128].1), ((6, 0, 60, 61.5, true), 10));
+        assert_eq!(tuned[2 * 15 * 128 + 60], (7, 0, 60, 60.0, true), "a reset takes it back");
     }
 
     #[test]
