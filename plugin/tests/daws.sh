@@ -1,5 +1,5 @@
 #!/bin/sh
-# Drives DAWs of Debian's without hands: Ardour with the VST3 bundle, Qtractor's scan of the CLAP.
+# Drives DAWs of Debian's without hands: Ardour with the VST3 bundle, state and outputs; Qtractor's scan of the CLAP.
 # On demand, not part of the suite: apt-get install ardour qtractor; cargo xtask bundle; plugin/tests/daws.sh
 set -eu
 bundled=$(cd "$(dirname "$0")/../../target/bundled" && pwd)
@@ -19,10 +19,13 @@ echo "CLAP:$HOME/.clap/Sprung.clap" | QT_QPA_PLATFORM=offscreen timeout 60 "$sca
 grep -q '^CLAP|Sprung|0:2|1:0|' "$work/qtractor"
 
 echo "── Ardour's scan"
-ardour=$(ls -d /usr/lib/ardour[0-9]* | head -n 1)
-LD_LIBRARY_PATH="$ardour" timeout 60 "$ardour/ardour-vst3-scanner" -f "$HOME/.vst3/Sprung.vst3"
-for step in make load; do
-    echo "── a session in Ardour: $step"
-    timeout 120 "$(command -v ardour7-lua)" "$scripts/daws.lua" "$step" "$work/session" Sprung 2>&1 | tee "$work/ardour"
+library=$(ls -d /usr/lib/ardour[0-9]* | head -n 1)
+LD_LIBRARY_PATH="$library" timeout 60 "$library/ardour-vst3-scanner" -f "$HOME/.vst3/Sprung.vst3"
+ardour() {
+    echo "── a session in Ardour: $1 $3"
+    timeout 120 "$(ls /usr/bin/ardour*-lua | head -n 1)" "$scripts/daws.lua" "$@" 2>&1 | tee "$work/ardour"
     grep -q '^passed' "$work/ardour"
-done
+}
+ardour make "$work/session" Sprung
+ardour load "$work/session" Sprung
+ardour outputs "$work/outputs" "Sprung Multi"
