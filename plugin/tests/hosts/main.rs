@@ -329,6 +329,8 @@ fn main() -> ExitCode {
             every_parameter_can_be_set_and_read
             one_channel_has_the_bits_of_the_command
             a_kit_has_the_bits_of_the_command
+            many_outputs_leave_the_main_one_as_it_is
+            the_effect_has_the_bits_of_the_command
             what_is_saved_comes_back
             automation_has_the_bits_of_the_engine
         }

@@ -9,10 +9,10 @@ import pedalboard._pedalboard
 from pedalboard import VST3Plugin
 
 
-def load(plugin, preset=None):
+def load(plugin, preset=None, name="Sprung"):
     # It would try out thousands of values of each of the 2,080 parameters that stand for MIDI controllers.
     pedalboard._pedalboard.PARAMETER_NAME_REGEXES_TO_IGNORE.add(re.compile(r"^MIDI Ch\. "))
-    synth = VST3Plugin(plugin, plugin_name="Sprung")
+    synth = VST3Plugin(plugin, plugin_name=name)
     if preset:
         # After a preset, the host goes on with the values that it knew before, and sets them when it resets the
         # plugin. A state makes it ask for the values.
@@ -22,13 +22,24 @@ def load(plugin, preset=None):
     return synth
 
 
-def render(plugin, preset, messages, sample_rate, block, frames, audio):
+def render(plugin, preset, messages, sample_rate, block, frames, audio, name="Sprung"):
     """Plays MIDI messages, each a frame and bytes; the samples go to a file, channel by channel."""
-    synth = load(plugin, preset)
+    synth = load(plugin, preset, name)
     timed = [(bytes(data), frame / sample_rate) for frame, data in messages]
     samples = synth(timed, (frames + 0.25) / sample_rate, sample_rate, num_channels=2, buffer_size=block)
     samples = numpy.ascontiguousarray(samples[:, :frames], dtype="float32")
     samples.tofile(audio)
+    return list(samples.shape)
+
+
+def effect(plugin, name, settings, incoming, sample_rate, block, audio):
+    """Sends a file's samples, the same on both sides, through an effect whose parameters have these names and positions."""
+    effect = load(plugin, name=name)
+    for parameter in effect.parameters.values():
+        parameter.raw_value = settings.get(parameter.name, parameter.raw_value)
+    side = numpy.fromfile(incoming, dtype="float32")
+    samples = effect(numpy.stack([side, side]), sample_rate, buffer_size=block)
+    numpy.ascontiguousarray(samples, dtype="float32").tofile(audio)
     return list(samples.shape)
 
 
@@ -55,7 +66,7 @@ def state(plugin, preset):
 
 def main():
     arguments = json.loads(sys.stdin.read())
-    print(json.dumps({"render": render, "parameters": parameters, "state": state}[arguments[0]](*arguments[1:])))
+    print(json.dumps({"render": render, "effect": effect, "parameters": parameters, "state": state}[arguments[0]](*arguments[1:])))
 
 
 main()

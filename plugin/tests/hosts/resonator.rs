@@ -45,18 +45,18 @@ fn player(state: &[u8], chord: f64, root: f64, mix: f64) -> Player {
     instance.play(RATE, 8192)
 }
 
-fn incoming(frames: usize) -> Vec<f32> {
+pub(crate) fn incoming(frames: usize) -> Vec<f32> {
     (0..frames as u64).map(|n| 0.2 * uniform(key(9, 0), n)).collect()
 }
 
 /// What `sprung render --input` makes of the same.
-fn by_the_command(song: &Song, patch: &Patch, input: &[f32]) -> Vec<Vec<f32>> {
+pub(crate) fn by_the_command(song: &Song, patch: &Patch, input: &[f32]) -> Vec<Vec<f32>> {
     let options = Options { sample_rate: SAMPLE_RATE, tail: Tail::None, ..Options::default() };
     rendered(&Job { input, ..Job::new(song, &Kit::of_patch(patch), options) })
 }
 
 /// A patch whose own exciters are off, also those that routes turn up.
-fn without_exciters(patch: &Patch) -> Patch {
+pub(crate) fn without_exciters(patch: &Patch) -> Patch {
     use Param::{BowLevel, BreathLevel, MalletLevel, NoiseHeld, NoiseLevel, PluckLevel};
     let exciters = [MalletLevel, PluckLevel, NoiseLevel, NoiseHeld, BowLevel, BreathLevel];
     let off = exciters.into_iter().fold(patch.clone(), |patch, param| patch.with(param, -60.0));

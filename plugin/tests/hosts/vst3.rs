@@ -1,14 +1,17 @@
 //! The VST3 bundle in two hosts driven from Python: dawdreamer and pedalboard, both made with JUCE.
 
 use crate::host::bundle;
-use crate::host::reference::{At, assert_same_bits, render};
+use crate::host::reference::{At, assert_same_bits, assert_sound, render};
+use crate::host::{Instance, open};
 use crate::patches::{drums, patches, state, state_of_kit};
 use crate::phrase::{self, FRAMES, SAMPLE_RATE};
 use crate::process::wait_until;
+use crate::resonator::{by_the_command, incoming, without_exciters};
 use crate::screen::{Onlooker, Screen};
 use crate::song::rendered_by_the_command;
 use serde_json::{Value, json};
 use sprung::engine::EventKind;
+use sprung::io::Song;
 use sprung::params::{PARAMS, Param, ParamInfo, Unit};
 use sprung::patch::Patch;
 use sprung::sound::Kit;
@@ -173,6 +176,45 @@ fn assert_bits_of_the_command(name: &str, messages: &[(u64, [u8; 3])], state: &[
     let audio = folder.path().join("pedalboard.f32");
     ask("pedalboard", &json!(["render", bundle::vst3(), preset, messages, SAMPLE_RATE, block, FRAMES, audio]));
     assert_same_bits(&format!("pedalboard, {name}"), &samples(&audio), &expected(block));
+}
+
+/// What plays on the main output has the bits of Sprung in Sprung Multi too, although this host has no buffers for the others.
+pub(crate) fn many_outputs_leave_the_main_one_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let [plain, multi] = ["Sprung", "Sprung Multi"].map(|name| {
+        let audio = folder.path().join(name);
+        let messages = phrase::messages();
+        ask("pedalboard", &json!(["render", bundle::vst3(), null, messages, SAMPLE_RATE, 480, FRAMES, audio, name]));
+        samples(&audio)
+    });
+    assert_sound("Sprung", &plain);
+    assert_same_bits("Sprung Multi", &multi, &plain);
+}
+
+/// A chord that is held has the bits of `sprung render --note … --input …` in pedalboard.
+pub(crate) fn the_effect_has_the_bits_of_the_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let [file, audio] = ["in.f32", "out.f32"].map(|name| folder.path().join(name));
+    let incoming = incoming(24_000);
+    std::fs::write(&file, incoming.iter().flat_map(|sample| sample.to_le_bytes()).collect::<Vec<u8>>()).unwrap();
+    let mut instance = Instance::resonator(&open());
+    let mut position = |name: &str, value: f64| {
+        let parameters = instance.parameters();
+        let found = parameters.iter().find(|parameter| parameter.name == name).unwrap();
+        (value - found.min) / (found.max - found.min)
+    };
+    let settings = json!({
+        "Chord": position("Chord", 3.0), "Chord root": position("Chord root", 48.0), "Resonator mix": position("Resonator mix", 1.0)
+    });
+    ask("pedalboard", &json!(["effect", bundle::vst3(), "Sprung Resonator", settings, file, SAMPLE_RATE, 480, audio]));
+    let song = Song::chord(&[48.0, 55.0, 60.0], 100.0 / 127.0, 0.5);
+    let patch = without_exciters(&Patch::default()).with(Param::InputLevel, 0.0);
+    let expected = by_the_command(&song, &patch, &incoming);
+    // This host sets parameters while the effect runs, and the mix moves in 20 ms.
+    let settled = |sound: Vec<Vec<f32>>| sound.into_iter().map(|side| side[960..].to_vec()).collect::<Vec<_>>();
+    let expected = settled(expected);
+    assert_sound("the effect", &expected);
+    assert_same_bits("the effect", &settled(samples(&audio)), &expected);
 }
 
 pub(crate) fn what_is_saved_comes_back() {

@@ -12,6 +12,7 @@ pub(super) struct Edit {
     pub(super) times: usize,
 }
 
+pub(super) const BUFFERS: &str = "src/wrapper/util/buffer_management.rs";
 pub(super) const CLAP_CONTEXT: &str = "src/wrapper/clap/context.rs";
 pub(super) const CLAP_WRAPPER: &str = "src/wrapper/clap/wrapper.rs";
 pub(super) const CONTEXT: &str = "src/wrapper/vst3/context.rs";
