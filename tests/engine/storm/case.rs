@@ -24,6 +24,8 @@ pub(crate) struct Case {
     pub(crate) seed: u64,
     /// One synth on sixteen channels, or an ensemble of sixteen synths.
     pub(crate) ensemble: bool,
+    /// Whether the synth plays on sixteen outputs beside the main one.
+    pub(crate) outputs: bool,
     pub(crate) patch: Patch,
     /// The patches that program changes select from (ensemble only).
     pub(crate) programs: Vec<Patch>,
@@ -235,9 +237,9 @@ pub(crate) fn decode(bytes: &[u8]) -> Case {
     let frames = now.saturating_add(1 + wait(tail)).min(MAX_FRAMES) as usize;
     let program = |preset: &Preset| without_limiter(preset.patch.clone());
     let programs = factory.iter().take(8).map(program).collect();
-    let (ensemble, block) = (form & 128 != 0, BLOCKS[usize::from(form & 7)]);
+    let (ensemble, outputs, block) = (form & 128 != 0, form & 64 != 0, BLOCKS[usize::from(form & 7)]);
     let (sample_rate, seed, patch) = (sample_rate(rate), u64::from(seed), without_limiter(patch));
-    Case { sample_rate, seed, ensemble, patch, programs, block, events, frames }
+    Case { sample_rate, seed, ensemble, outputs, patch, programs, block, events, frames }
 }
 
 fn sample_rate(byte: u8) -> f64 {

@@ -47,10 +47,12 @@ pub(crate) fn case(seed: u64, serial: u64) -> Vec<u8> {
     let s = &mut stream;
     let preset = if s.chance(0.25) { 128 + s.byte() / 2 } else { 0 };
     let ensemble = if s.chance(0.01) { 128 } else { 0 };
+    // One in four plays on many outputs. It is not drawn, so that all cases are what they were before there were such outputs.
+    let outputs = if serial % 4 == 3 { 64 } else { 0 };
     // Few cases are long, and few use tiny blocks.
     let tail = if s.chance(0.05) { 200 + s.below(40) } else { 100 + s.below(100) } as u8;
     let block = [0, 0, 0, 1, 2, 3, 5, 6][s.below(8)];
-    let mut bytes = vec![s.byte(), preset, ensemble | block, s.byte(), tail];
+    let mut bytes = vec![s.byte(), preset, ensemble | outputs | block, s.byte(), tail];
 
     // Many patches have only a few changed parameters; some are completely random.
     let params = PARAM_IDS.split_whitespace().count();

@@ -2,7 +2,9 @@
 
 use super::bound::{Step, UNKNOWN, bound};
 use super::case::Case;
+use sprung::engine::synth::Outputs;
 use sprung::engine::{Ensemble, Event, Snapshot, Synth};
+use sprung::sound::kit::OUTPUTS;
 
 /// Relative tolerance for single-precision rounding over all frames of a case.
 const TOLERANCE: f64 = 1e-3;
@@ -14,6 +16,8 @@ const LOOK_FRAMES: usize = 256;
 /// A synth or an ensemble.
 enum Player {
     Synth(Box<Synth>),
+    /// With the left and right samples of its other outputs.
+    Outputs(Box<Synth>, Vec<[Vec<f32>; 2]>),
     Ensemble(Box<Ensemble>),
 }
 
@@ -24,19 +28,32 @@ impl Player {
         }
         let mut synth = Box::new(Synth::new(case.sample_rate, case.seed));
         synth.set_patch(&case.patch);
+        if case.outputs {
+            return Player::Outputs(synth, vec![[0, 1].map(|_| vec![0.0; case.block]); OUTPUTS]);
+        }
         Player::Synth(synth)
     }
 
+    /// Plays a block. What other outputs have is added to the main one: together they are the sound of all strikes.
     fn process(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]) {
         match self {
             Player::Synth(synth) => synth.process(events, left, right),
+            Player::Outputs(synth, others) => {
+                let frames = left.len();
+                let sides = others.iter_mut().map(|sides| sides.each_mut().map(|side| &mut side[..frames]));
+                synth.process_with_outputs(events, &[], left, right, &mut Outputs::new(sides));
+                for [other_left, other_right] in others {
+                    left.iter_mut().zip(other_left).for_each(|(sum, sample)| *sum += *sample);
+                    right.iter_mut().zip(other_right).for_each(|(sum, sample)| *sum += *sample);
+                }
+            }
             Player::Ensemble(ensemble) => ensemble.process(events, left, right),
         }
     }
 
     fn snapshot(&self) -> Snapshot {
         match self {
-            Player::Synth(synth) => {
+            Player::Synth(synth) | Player::Outputs(synth, _) => {
                 let mut snapshot = Snapshot::default();
                 synth.show(&mut snapshot);
                 snapshot
@@ -102,7 +119,7 @@ fn look(player: &mut Player, step: Option<&Step>, frame: usize) -> Result<(), St
             return Err(format!("frame {frame}: mass {m} with energy {} where the bound is {limit}²", mass.energy));
         }
     }
-    if let Player::Synth(synth) = player {
+    if let Player::Synth(synth) | Player::Outputs(synth, _) = player {
         // An overflow here panics in builds with overflow checks.
         let tail = synth.tail_frames();
         if tail > 0 && synth.is_silent() {

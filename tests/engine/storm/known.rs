@@ -14,7 +14,7 @@ use sprung::units::key_from_frequency;
 /// A case on one synth at 48 kHz.
 fn case(patch: Patch, events: Vec<Event>, frames: usize) -> Case {
     let (sample_rate, seed, ensemble, programs, block) = (48_000.0, 1, false, vec![], 512);
-    Case { sample_rate, seed, ensemble, patch: without_limiter(patch), programs, block, events, frames }
+    Case { sample_rate, seed, ensemble, outputs: false, patch: without_limiter(patch), programs, block, events, frames }
 }
 
 fn preset(name: &str) -> Patch {

@@ -46,7 +46,11 @@ fn describe(bytes: &[u8]) -> String {
     let (case, hex) = (decode(&bytes), bytes.iter().fold(String::new(), |hex, byte| format!("{hex}{byte:02x}")));
     let mut text = format!("{}\n", try_bytes(&bytes).unwrap_err());
     let _ = writeln!(text, "  keep it: echo {hex} | xxd -r -p > fuzz/corpus/events/NAME");
-    let place = if case.ensemble { "an ensemble" } else { "a synth" };
+    let place = match (case.ensemble, case.outputs) {
+        (true, _) => "an ensemble",
+        (_, true) => "a synth with many outputs",
+        _ => "a synth",
+    };
     let _ = writeln!(text, "  {place} at {} Hz, {} frames in blocks of {}", case.sample_rate, case.frames, case.block);
     for info in PARAMS.iter().filter(|info| case.patch.get(info.param) != info.default) {
         let _ = write!(text, "  {} = {}", info.id, info.format(case.patch.get(info.param)));

@@ -4,16 +4,8 @@ use super::edit::{BUFFERS, CLAP_WRAPPER, Edit, WRAPPER, edit};
 
 pub(super) const EDITS: &[Edit] = &[
     // The index one past the last port must give no port, and inputs are no outputs.
-    edit(
-        WRAPPER,
-        "if aux_input_idx > data.numOutputs as usize {",
-        "if aux_input_idx >= data.numInputs as usize {",
-    ),
-    edit(
-        WRAPPER,
-        "if aux_output_idx > data.numOutputs as usize {",
-        "if aux_output_idx >= data.numOutputs as usize {",
-    ),
+    edit(WRAPPER, "if aux_input_idx > data.numOutputs as usize {", "if aux_input_idx >= data.numInputs as usize {"),
+    edit(WRAPPER, "if aux_output_idx > data.numOutputs as usize {", "if aux_output_idx >= data.numOutputs as usize {"),
     edit(
         CLAP_WRAPPER,
         "if aux_input_idx > process.audio_inputs_count as usize {",
