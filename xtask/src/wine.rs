@@ -1,5 +1,6 @@
 //! Wine, which runs programs for Windows on Linux, without a screen.
 
+use crate::files::make_folder_of;
 use crate::shell::{root, run_to_end, succeeds};
 use std::ffi::OsStr;
 use std::path::PathBuf;
@@ -36,6 +37,8 @@ impl Prefix {
             }
         }
         println!("making {}, which takes a minute", prefix.0.display());
+        // Wine makes the folder alone.
+        make_folder_of(&prefix.0)?;
         let mut boot = prefix.command("wineboot");
         run_to_end(boot.arg("-i"), "wine wineboot -i")?;
         // Windows are made, since threads send messages through them, but shown nowhere.
