@@ -8,8 +8,8 @@ macro_rules! pages {
 }
 
 pages! {
-    "sound" "recipes" "exciters" "bodies" "modulation" "space" "kits" "tuning" "command" "batch" "python" "midi" "live"
-    "daw" "window" "recordings" "lab"
+    "sound" "recipes" "exciters" "bodies" "modulation" "space" "kits" "tuning" "mts-esp" "command" "batch" "python" "midi"
+    "live" "learn" "daw" "outputs" "resonator" "hosts" "window" "recordings" "lab"
 }
 
 /// The table of contents, as Markdown.

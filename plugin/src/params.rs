@@ -12,14 +12,16 @@ use crate::state::{self, Read, State, VIEW, View};
 use nice_plug::prelude::*;
 use nice_plug_core::params::InternalParamMut;
 use nice_plug_core::params::internals::ParamPtr;
+use sprung::params::learned::{Controllers, Learned};
 use sprung::params::{Change, PARAM_COUNT, PARAMS, ParamInfo, Unit};
 use sprung::preset::Playable;
+use sprung::preset::library::Library;
 use sprung::sound::Collector;
 use std::array::from_fn;
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard};
 
 /// A host's parameter.
 pub(crate) enum Knob {
@@ -142,6 +144,7 @@ pub(crate) struct SprungParams {
     is_for_preset: AtomicBool,
     callback: Callback,
     marks: Marks,
+    learned: Arc<Learned>,
     /// Locked while something is loaded or the whole state is read; never by the audio thread.
     locked: Mutex<Locked>,
 }
@@ -177,8 +180,32 @@ impl SprungParams {
             is_for_preset: AtomicBool::new(false),
             callback: Callback::default(),
             marks: Marks::default(),
+            learned: Arc::default(),
             locked: Mutex::new(locked),
         }
+    }
+
+    /// The same with the controllers that all instances in a host share, as they are kept for the user.
+    pub(crate) fn of_host(self) -> Self {
+        static SHARED: LazyLock<Arc<Learned>> = LazyLock::new(|| {
+            let learned = Learned::default();
+            match Library::of_user().map_or_else(|| Ok(Controllers::new()), |library| library.controllers()) {
+                Ok(controllers) => learned.publish(&controllers),
+                Err(error) => nice_warn!("no controller moves a parameter: {error}"),
+            }
+            Arc::new(learned)
+        });
+        Self { learned: SHARED.clone(), ..self }
+    }
+
+    /// The controllers that move parameters.
+    pub(crate) fn learned(&self) -> &Learned {
+        &self.learned
+    }
+
+    /// The value that a parameter's knob shows, without modulation. Real-time safe.
+    pub(crate) fn present(&self, info: &ParamInfo) -> f32 {
+        info.denormalise(self.knobs[info.param as usize].position().into())
     }
 
     /// The knobs in the order of the table.

@@ -46,7 +46,7 @@ impl Default for ResonatorParams {
     fn default() -> Self {
         let chords = IntRange::Linear { min: 0, max: CHORDS.len() as i32 - 1 };
         let chord = |text: &str| CHORDS.iter().position(|(name, _)| name.eq_ignore_ascii_case(text.trim()));
-        let sprung = Arc::new(SprungParams::of_effect());
+        let sprung = Arc::new(SprungParams::of_effect().of_host());
         publish(&sprung);
         let percent = |text: &str| text.trim().trim_end_matches('%').trim_end().parse::<f32>().ok();
         Self {

@@ -67,6 +67,12 @@ pub(super) fn presets(typed: &OsStr) -> Vec<CompletionCandidate> {
     candidates
 }
 
+/// Completes the ids of parameters.
+pub(super) fn parameters(typed: &OsStr) -> Vec<CompletionCandidate> {
+    let matching = PARAMS.iter().filter(|info| info.id.starts_with(&*typed.to_string_lossy()));
+    matching.map(|info| CompletionCandidate::new(info.id).help(Some(info.help.into()))).collect()
+}
+
 /// Completes `id=` for each parameter, and `id=choice` after the name of a parameter with choices.
 pub(super) fn settings(typed: &OsStr) -> Vec<CompletionCandidate> {
     let typed = typed.to_string_lossy();

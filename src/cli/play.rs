@@ -4,8 +4,11 @@ use super::song::SongArgs;
 use super::sound::SoundArgs;
 use super::terminal::{complain, complain_lines, print, warn};
 use super::{completion, interrupt, quantity, view};
+use clap_complete::ArgValueCompleter;
 use sprung::engine::telemetry::Load;
 use sprung::io::{Inputs, Output, Target};
+use sprung::params::Param;
+use sprung::params::learned::Controllers;
 use sprung::preset::Playable;
 use sprung::preset::library::Library;
 use sprung::realtime::{
@@ -27,6 +30,7 @@ Examples:
   sprung play song.mid --preset Kick --record take.wav
   sprung play --midi-in none --buffer 64 --set decay=\"3 s\"
   sprung play --host jack --midi-in Keystation --headless
+  sprung play --learn decay=21 --learn space_mix=22
   sprung play --list";
 
 /// Time between two checks of devices, ports and the recording.
@@ -56,7 +60,15 @@ pub(super) struct Args {
     #[arg(long, value_name = "FRAMES", allow_hyphen_values = true,
         value_parser = quantity::whole::<u32>(*BLOCKS.start() as u64..=*BLOCKS.end() as u64))]
     buffer: Option<u32>,
-    /// List sound systems, their devices, and MIDI ports
+    /// Have a MIDI controller (1-119) move a parameter, from now on and in the plugin's window as well; may be repeated. See
+    /// `sprung params`
+    #[arg(long, value_name = "ID=CONTROLLER", value_parser = quantity::learning,
+        add = ArgValueCompleter::new(completion::parameters))]
+    learn: Vec<(Param, u8)>,
+    /// Forget the controller of a parameter; may be repeated
+    #[arg(long, value_name = "ID", value_parser = quantity::parameter, add = ArgValueCompleter::new(completion::parameters))]
+    forget: Vec<Param>,
+    /// List sound systems, their devices, MIDI ports, and the controllers that move parameters
     #[arg(long)]
     list: bool,
     /// Record what is played to a WAV file of 32-bit floats
@@ -72,8 +84,9 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<()> {
     device::silence_library();
+    let controllers = args.controllers()?;
     if args.list {
-        return list();
+        return list(&controllers);
     }
     let headless = args.headless || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal();
     let record = args.record.as_ref().map(Target::new);
@@ -109,6 +122,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let (sample_rate, seed) = (found.sample_rate(), args.sound.seed);
     let setup = Setup { sample_rate, seed, kit, channels, programs, mix: mix.as_ref(), tuning, song };
     let (player, kits) = Player::new(setup, inputs, tap, status.clone());
+    let player = player.with_controllers(&controllers);
     let session = match Session::start(&found, choice, player, status.clone()) {
         Ok(session) => session,
         Err(error) => {
@@ -129,8 +143,34 @@ pub(super) fn run(args: &Args) -> Result<()> {
     if headless { stage.headless(closing) } else { stage.on_terminal(keys, kits, closing, sounds, make) }
 }
 
-fn list() -> Result<()> {
-    print(&(device::list() + &midi_ports::list()))
+impl Args {
+    /// The controllers that move parameters, after those of the command line are learnt or forgotten.
+    fn controllers(&self) -> Result<Controllers> {
+        let forgotten = self.forget.iter().map(|param| (*param, None));
+        let changes = forgotten.chain(self.learn.iter().map(|(param, controller)| (*param, Some(*controller))));
+        let Some(library) = Library::of_user() else {
+            let message = "the system names no folder in which it could be kept: expected a home folder";
+            return if changes.count() > 0 { Err(Error::value("--learn", message)) } else { Ok(Controllers::new()) };
+        };
+        for (param, controller) in changes {
+            library.set_controller(param, controller)?;
+        }
+        // Playing goes on without them.
+        Ok(library.controllers().unwrap_or_else(|error| {
+            complain("warning", format_args!("no controller moves a parameter: {error}"));
+            Controllers::new()
+        }))
+    }
+}
+
+fn list(controllers: &Controllers) -> Result<()> {
+    let learnt: String = match controllers.is_empty() {
+        true => "  none\n".to_owned(),
+        false => {
+            controllers.iter().map(|(number, param)| format!("  --learn {}={number}\n", param.info().id)).collect()
+        }
+    };
+    print(&(device::list() + &midi_ports::list() + "Controllers of parameters\n" + &learnt))
 }
 
 /// Prints a line on stderr.

@@ -81,6 +81,7 @@ pub struct ParamInfo {
 
 mod choice;
 mod knob;
+pub mod learned;
 mod table;
 mod text;
 mod values;

@@ -3,6 +3,8 @@
 use super::about::MAX_LABEL;
 use super::{Playable, Preset, is_file_name};
 use crate::error::{Error, Result};
+use crate::params::Param;
+use crate::params::learned::{Controllers, bind, check_controller};
 use crate::text::file_stem;
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -11,7 +13,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// A folder with the user's sounds: `presets/` has their files, `bin/` the discarded files, `favourites.txt` the names
-/// of favourites, one per line.
+/// of favourites, one per line, `controllers.toml` the controllers that move parameters.
 #[derive(Clone, Debug)]
 pub struct Library {
     folder: PathBuf,
@@ -196,6 +198,56 @@ impl Library {
 
     fn favourites_file(&self) -> PathBuf {
         self.folder.join("favourites.txt")
+    }
+
+    /// The controllers that move parameters. None if there is no file of them.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file cannot be read, [`Error::Format`] if not all of it is understood.
+    pub fn controllers(&self) -> Result<Controllers> {
+        let file = self.controllers_file();
+        let wrong = |message: String| Error::format(file.display().to_string(), message);
+        let text = match fs::read_to_string(&file) {
+            Ok(text) => text,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Controllers::new()),
+            Err(error) => return Err(Error::io(file.display().to_string(), error)),
+        };
+        let table: toml::Table = text.parse().map_err(|error: toml::de::Error| wrong(error.message().to_owned()))?;
+        let mut controllers = Controllers::new();
+        for (id, number) in table {
+            let expected =
+                || wrong(format!("{id} = {number}: expected a parameter's id and a controller, as in decay = 21"));
+            let param = Param::from_id(&id).ok_or_else(expected)?;
+            let controller = number.as_integer().and_then(|number| u8::try_from(number).ok()).ok_or_else(expected)?;
+            check_controller(controller).map_err(|message| wrong(format!("{id}: {message}")))?;
+            if let Some(other) = controllers.insert(controller, param) {
+                return Err(wrong(format!(
+                    "controller {controller} moves both {} and {id}: expected one",
+                    other.info().id
+                )));
+            }
+        }
+        Ok(controllers)
+    }
+
+    /// Binds a controller to a parameter, in place of what either was bound to; without a controller, the parameter has none.
+    /// Returns all that are bound.
+    ///
+    /// # Errors
+    /// As [`Library::controllers`]: what is not understood is not written over. [`Error::Value`] for a controller that cannot
+    /// be bound, [`Error::Io`] if the file cannot be written.
+    pub fn set_controller(&self, param: Param, controller: Option<u8>) -> Result<Controllers> {
+        controller.map_or(Ok(()), check_controller).map_err(|message| Error::value(param.info().id, message))?;
+        let mut controllers = self.controllers()?;
+        bind(&mut controllers, param, controller);
+        let line = |(controller, param): (&u8, &Param)| format!("{} = {controller}\n", param.info().id);
+        let text: String = controllers.iter().map(line).collect();
+        write_whole(&self.controllers_file(), text.as_bytes(), true)?;
+        Ok(controllers)
+    }
+
+    fn controllers_file(&self) -> PathBuf {
+        self.folder.join("controllers.toml")
     }
 }
 

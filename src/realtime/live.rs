@@ -108,10 +108,18 @@ impl LiveInputs {
 
     /// Inserts the events that belong before frame `end` of the clock's block into `events`, which must be in order and
     /// stays so. Frames in `events` count from `start`. At the same frame, existing events come first. Events sent
-    /// during the call may be left for the next one.
+    /// during the call may be left for the next one. `change` gets each event with its channel, and those before it, and returns
+    /// what is inserted.
     ///
-    /// Real-time safe if `events` has room for [`LiveInputs::capacity`] more events.
-    pub fn merge(&mut self, clock: &BlockClock, start: u32, end: u32, events: &mut Vec<Event>) {
+    /// Real-time safe if `change` is, and `events` has room for [`LiveInputs::capacity`] more events.
+    pub fn merge(
+        &mut self,
+        clock: &BlockClock,
+        start: u32,
+        end: u32,
+        events: &mut Vec<Event>,
+        mut change: impl FnMut(&[Event], u8, EventKind) -> Option<EventKind>,
+    ) {
         for input in &mut self.0 {
             let mut earliest = 0;
             // Only the events that wait at the start: a sender that fills the queue as fast as it is emptied would keep
@@ -122,7 +130,9 @@ impl LiveInputs {
                 let frame = frame.saturating_sub(start).max(earliest);
                 earliest = frame;
                 let place = events.partition_point(|event| event.frame <= frame);
-                events.insert(place, Event { frame, channel, kind });
+                if let Some(kind) = change(&events[..place], channel, kind) {
+                    events.insert(place, Event { frame, channel, kind });
+                }
                 let _ = input.pop();
             }
         }
@@ -150,8 +160,8 @@ mod tests {
             assert!(second.send(LiveEvent { stamp: Stamp::System(at(ms)), channel: 0, kind: program(number) }));
         }
         let mut events = vec![Event { frame: 48, channel: 0, kind: program(0) }];
-        inputs.merge(&clock, 0, 192, &mut events);
-        inputs.merge(&clock, 0, 480, &mut events);
+        inputs.merge(&clock, 0, 192, &mut events, |_, _, kind| Some(kind));
+        inputs.merge(&clock, 0, 480, &mut events, |_, _, kind| Some(kind));
         let order: Vec<_> = events.iter().map(|event| (event.frame, event.kind)).collect();
         // Events of one queue stay in order, even if their time stamps are not.
         let expected = [(48, 0), (48, 1), (144, 3), (240, 5), (240, 6), (240, 7)];
@@ -206,7 +216,7 @@ mod tests {
             let start = Instant::now();
             while start.elapsed() < Duration::from_millis(300) {
                 let mut events = Vec::with_capacity(inputs.capacity());
-                inputs.merge(&clock, 0, 480, &mut events);
+                inputs.merge(&clock, 0, 480, &mut events, |_, _, kind| Some(kind));
                 most = most.max(events.len());
                 assert!(events.len() <= inputs.capacity(), "{}", events.len());
             }

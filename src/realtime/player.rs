@@ -9,6 +9,8 @@ use super::status::Status;
 use super::stream::Source;
 use crate::engine::{Ensemble, Event, EventKind, TelemetryWriter};
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
+use crate::params::Param;
+use crate::params::learned::{Controllers, Learned, Movement, Takeover};
 use crate::sound::kit::KEYS;
 use crate::sound::{Collector, Kit, Mix, Tuning};
 use rtrb::{Consumer, Producer, RingBuffer};
@@ -19,6 +21,9 @@ pub const MAX_BLOCK: usize = 4096;
 
 /// Maximum number of kits that wait for the audio thread.
 const KIT_CAPACITY: usize = 32;
+
+/// Maximum number of movements of parameters by controllers that wait for the display.
+const MOVED_CAPACITY: usize = 1024;
 
 /// The settings of a player.
 pub struct Setup<'a> {
@@ -40,10 +45,11 @@ pub struct Setup<'a> {
     pub song: Option<Song>,
 }
 
-/// Sends kits to a player, and frees them when the player no longer uses them.
+/// Sends kits to a player, and frees them when the player no longer uses them; tells what controllers change in them.
 pub struct KitSender {
     queue: Producer<(u8, Arc<Kit>)>,
     collector: Collector,
+    moved: Consumer<(u8, Param, f32)>,
 }
 
 impl KitSender {
@@ -51,6 +57,11 @@ impl KitSender {
     pub fn send(&mut self, channel: u8, kit: &Arc<Kit>) -> bool {
         self.collector.keep(kit);
         self.queue.push((channel, kit.clone())).is_ok()
+    }
+
+    /// The next parameter that a controller has moved: its channel and value. Movements that nobody asks for are not kept for ever.
+    pub fn next_moved(&mut self) -> Option<(u8, Param, f32)> {
+        self.moved.pop().ok()
     }
 }
 
@@ -61,6 +72,10 @@ pub struct Player {
     song: Option<SongCursor<Song>>,
     inputs: LiveInputs,
     kits: Consumer<(u8, Arc<Kit>)>,
+    /// The controllers that move parameters, and which have hold of them on each channel.
+    learned: Learned,
+    takeovers: Vec<Takeover>,
+    moved: Producer<(u8, Param, f32)>,
     clock: BlockClock,
     events: Vec<Event>,
     left: Vec<f32>,
@@ -83,6 +98,7 @@ impl Player {
         let song = setup.song.map(|song| SongCursor::new(song, sample_rate));
         let densest = song.as_ref().map_or(0, |song| song.densest_block(MAX_BLOCK));
         let (queue, kits) = RingBuffer::new(KIT_CAPACITY);
+        let (moved, all_moved) = RingBuffer::new(MOVED_CAPACITY);
         let collector = Collector::default();
         let ensemble = Ensemble::of_kits(sample_rate, setup.seed, setup.kit, setup.programs.to_vec());
         let channels = setup.channels.iter();
@@ -101,6 +117,9 @@ impl Player {
             events: Vec::with_capacity(densest + inputs.capacity()),
             inputs,
             kits,
+            learned: Learned::default(),
+            takeovers: (0..16).map(|_| Takeover::default()).collect(),
+            moved,
             clock: BlockClock::new(sample_rate),
             left: vec![0.0; MAX_BLOCK],
             right: vec![0.0; MAX_BLOCK],
@@ -112,7 +131,14 @@ impl Player {
             ended: false,
             _collector: collector.clone(),
         };
-        (player, KitSender { queue, collector })
+        (player, KitSender { queue, collector, moved: all_moved })
+    }
+
+    /// The same player with controllers that move parameters of the channel on which they are played.
+    #[must_use]
+    pub fn with_controllers(self, controllers: &Controllers) -> Self {
+        self.learned.publish(controllers);
+        self
     }
 
     /// Renders a piece of a block that begins `start` frames after the start of the block.
@@ -122,7 +148,30 @@ impl Player {
         if let Some(song) = &mut self.song {
             song.advance(len, &mut self.events);
         }
-        self.inputs.merge(&self.clock, start, start + len as u32, &mut self.events);
+        let Self { ensemble, learned, takeovers, moved, .. } = self;
+        let end = start + len as u32;
+        self.inputs.merge(&self.clock, start, end, &mut self.events, |before, channel, kind| {
+            let EventKind::Control { controller, value: at } = kind else { return Some(kind) };
+            let takeover = takeovers.get_mut(usize::from(channel))?;
+            // Events of this block have not reached the ensemble yet.
+            let set = |event: &Event, wanted| match event.kind {
+                EventKind::Param { param, value } if (event.channel, param) == (channel, wanted) => Some(value),
+                _ => None,
+            };
+            let movement = takeover.follow(learned, controller, at, |info| {
+                let last = before.iter().rev().find_map(|event| set(event, info.param));
+                last.unwrap_or_else(|| ensemble.values(channel).get(info.param))
+            });
+            match movement {
+                Movement::Free => Some(kind),
+                Movement::Nothing => None,
+                Movement::Turns(info) => {
+                    let (param, value) = (info.param, info.denormalise(at.into()));
+                    let _ = moved.push((channel, param, value));
+                    Some(EventKind::Param { param, value })
+                }
+            }
+        });
         for event in &self.events {
             let known = !matches!(event.kind, EventKind::Program(number) if usize::from(number) >= self.programs);
             if known {
@@ -247,6 +296,38 @@ mod tests {
         player.fill(&mut out, 2, at(100));
         let first = out.iter().position(|sample| *sample != 0.0).unwrap() / 2;
         assert_eq!(first, 1764, "40 ms into the block after the one in which it came");
+    }
+
+    #[test]
+    fn a_bound_controller_moves_the_parameter_of_its_channel_once_it_has_reached_it() {
+        // Its knob stands at 0.5.
+        let decay = Param::Decay.info();
+        let patch = Patch::default().with(Param::Decay, decay.denormalise(0.5));
+        let (player, [mut sender], mut kits, _) = player(None, &patch);
+        let mut player = player.with_controllers(&Controllers::from([(7, Param::Decay)]));
+        let mut play = |player: &mut Player, positions: &[u8]| {
+            let start = Instant::now();
+            let stamp = super::super::Stamp::System(start);
+            for position in positions {
+                let kind = EventKind::Control { controller: 7, value: f32::from(*position) / 127.0 };
+                sender.send(super::super::LiveEvent { stamp, channel: 2, kind });
+            }
+            for since in [0, 10, 20].map(Duration::from_millis) {
+                player.fill(&mut [0.0_f32; 882], 2, Moment { now: start + since, called: since, heard: since });
+            }
+        };
+        let at = |position: u8| decay.denormalise((f32::from(position) / 127.0).into());
+        play(&mut player, &[10, 40]);
+        assert_eq!(player.ensemble.values(2).get(Param::Decay), decay.denormalise(0.5), "not yet");
+        // Within one block.
+        play(&mut player, &[70, 100, 20]);
+        assert_eq!(player.ensemble.values(2).get(Param::Decay), at(20));
+        assert_eq!(player.ensemble.values(1).get(Param::Decay), decay.denormalise(0.5), "another channel");
+        let told: Vec<_> = std::iter::from_fn(|| kits.next_moved()).collect();
+        assert_eq!(told, [70, 100, 20].map(|position| (2, Param::Decay, at(position))));
+        assert!(kits.send(2, &Kit::of_patch(&patch)));
+        play(&mut player, &[21, 22]);
+        assert_eq!(player.ensemble.values(2).get(Param::Decay), decay.denormalise(0.5), "another kit does not jump");
     }
 
     #[test]

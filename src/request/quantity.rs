@@ -5,6 +5,7 @@
 #[cfg(feature = "batch")]
 use crate::io::FileFormat;
 use crate::io::{SampleFormat, SongTime};
+use crate::params::learned::check_controller;
 use crate::params::{PARAMS, Param};
 use crate::render::{Level, SAMPLE_RATES, Tail};
 use crate::units::{split_quantity, with_decimal_point};
@@ -225,8 +226,7 @@ pub fn channel(text: &str) -> Result<(u8, String), String> {
 /// A message that says what would be right.
 pub fn setting(text: &str) -> Result<(Param, f32), String> {
     let (id, value) = text.split_once('=').ok_or("expected ID=VALUE, as in decay=0.5")?;
-    let id = id.trim();
-    let param = Param::from_id(id).ok_or_else(|| no_parameter(id))?;
+    let (id, param) = (id.trim(), parameter(id)?);
     if let Some((first, rest)) = value.split_once(',')
         && rest.contains('=')
     {
@@ -234,6 +234,27 @@ pub fn setting(text: &str) -> Result<(Param, f32), String> {
     }
     let value = param.info().parse(value).map_err(|message| format!("{id}: {message}"))?;
     Ok((param, value))
+}
+
+/// Parses a parameter's id.
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn parameter(text: &str) -> Result<Param, String> {
+    let id = text.trim();
+    Param::from_id(id).ok_or_else(|| no_parameter(id))
+}
+
+/// Parses `id=controller`: a parameter and the MIDI controller that is to move it.
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn learning(text: &str) -> Result<(Param, u8), String> {
+    let (id, controller) = text.split_once('=').ok_or("expected ID=CONTROLLER, as in decay=21")?;
+    let param = parameter(id)?;
+    let controller = whole(0..=127)(controller).map_err(|message| format!("controller {message}"))?;
+    check_controller(controller)?;
+    Ok((param, controller))
 }
 
 fn no_parameter(id: &str) -> String {

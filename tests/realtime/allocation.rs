@@ -3,6 +3,8 @@
 use assert_no_alloc::{assert_no_alloc, violation_count};
 use sprung::engine::EventKind;
 use sprung::io::{Inputs, Output, Song, Target};
+use sprung::params::Param;
+use sprung::params::learned::Controllers;
 use sprung::patch::Patch;
 use sprung::realtime::convert::DeviceSample;
 use sprung::realtime::{LiveInputs, Moment, Player, Recording, Setup, Source, Status};
@@ -29,7 +31,8 @@ fn play<T: DeviceSample>(frames: usize, channels: usize) {
         tuning: &Tuning::EQUAL,
         song: Some(song),
     };
-    let (mut player, mut kits) = Player::new(setup, inputs, Some(tap), status.clone());
+    let (player, mut kits) = Player::new(setup, inputs, Some(tap), status.clone());
+    let mut player = player.with_controllers(&Controllers::from([(21, Param::Tilt)]));
     let start = Instant::now();
     let mut out = vec![T::SILENCE; frames * channels];
     let mut blocks_with_sound = 0;
@@ -39,6 +42,7 @@ fn play<T: DeviceSample>(frames: usize, channels: usize) {
             keys.send_now(n, EventKind::NoteOn { key, detune: 0.0, velocity: 0.7, id: None });
             keys.send_now(n, EventKind::Program(n % 4));
             keys.send_now(n, EventKind::PitchBend(0.1));
+            keys.send_now(n, EventKind::Control { controller: 21, value: f32::from(n) / 11.0 });
         }
         kits.send((block % 16) as u8, &Kit::of_patch(&Patch::default()));
         let _ = (status.telemetry().snapshot(), status.telemetry().load());

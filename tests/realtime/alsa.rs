@@ -209,3 +209,36 @@ fn what_cannot_be_played_on_says_what_can() {
     assert!(list.contains("--host alsa\n") && list.contains("  --device \"some\"  Some\n"), "{list}");
     assert!(list.contains("MIDI\n"), "{list}");
 }
+
+#[test]
+fn controllers_are_learnt_listed_and_forgotten() {
+    let sandbox = Sandbox::new();
+    let run = |options: &str| {
+        let mut command = sprung(&format!("play --list {options}"));
+        let output = command.env("XDG_DATA_HOME", sandbox.folder()).stdout(Stdio::piped()).output().unwrap();
+        let [stdout, stderr] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        let listed = stdout.split_once("Controllers of parameters\n").map(|(_, listed)| listed.to_owned());
+        (listed.ok_or(output.status.code()), stderr)
+    };
+    assert_eq!(run(""), (Ok("  none\n".to_owned()), String::new()));
+    let two = "  --learn decay=21\n  --learn space_mix=22\n";
+    assert_eq!(run("--learn decay=21 --learn space_mix=22").0.as_deref(), Ok(two));
+    assert_eq!(run("").0.as_deref(), Ok(two), "they are kept");
+    assert_eq!(run("--forget decay --learn tilt=22").0.as_deref(), Ok("  --learn tilt=22\n"));
+    for (options, expected) in [
+        ("--learn tilt=64", "controller 64 is a pedal or switch, and cannot move a parameter: expected another one"),
+        ("--learn tilt=128", "controller 128 is out of range: expected 0 to 127"),
+        ("--learn tlit=1", "there is no parameter ‘tlit’; the nearest is ‘tilt’"),
+        ("--learn tilt", "expected ID=CONTROLLER, as in decay=21"),
+        ("--forget tlit", "the nearest is ‘tilt’"),
+    ] {
+        let (listed, stderr) = run(options);
+        assert!(listed == Err(Some(2)) && stderr.contains(expected), "{options}: {stderr}");
+    }
+    let file = sandbox.path("sprung/controllers.toml");
+    std::fs::write(&file, "tilt is 22\n").unwrap();
+    let (listed, warning) = run("");
+    assert!(listed.is_ok_and(|listed| listed == "  none\n") && warning.contains("controllers.toml"), "{warning}");
+    assert_eq!(run("--learn tilt=23").0, Err(Some(1)));
+    assert_eq!(text(&file), "tilt is 22\n", "not written over");
+}

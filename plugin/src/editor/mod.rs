@@ -6,10 +6,11 @@
 //! | `theme` | colours, sizes and fonts; the places of the parts |
 //! | `play` | the page it opens with: the body large, what moves it, what it is, what it stands on, macros |
 //! | `modes`, `displays`, `body` | the upper half of *Sound*: the modes, moving pictures, the moving body; also the body's page |
-//! | `pages`, `routes` | the lower half: tabs, sections of parameters, kit, tuning, devices; routes and MIDI learn |
+//! | `pages`, `routes` | the lower half: tabs, sections of parameters, kit, tuning, devices; routes, also learnt |
 //! | `keyboard` | the piano, and whatever else plays a key |
 //! | `browser`, `manual`, `drops` | over the window: sounds to find and save, the manual, fits of dropped recordings |
 //! | `widgets` | what all of these are made of |
+//! | `binding` | in the menus of knobs: controllers that turn them |
 //! | `controls` | not seen: what widgets share, changes that hosts see, undo, the sound that is shown |
 //! | `host` | not seen: the window's size, focus and screen readers at its host |
 //!
@@ -24,6 +25,7 @@
 //! per second, so no picture of a whole window can cost less. `plugin/tests/hosts/cpu` prints the costs, and fails if a
 //! silent window is drawn.
 
+mod binding;
 mod body;
 mod browser;
 mod controls;

@@ -3,6 +3,7 @@
 use super::discovery::DISCOVERY;
 use super::extensions;
 use super::host::Host;
+use super::input;
 use super::instance::Instance;
 use super::modulation;
 use super::published::published;
@@ -110,6 +111,7 @@ unsafe extern "C" fn create(
         match published(|| (kind.make)(host)) {
             (plugin, Some(params)) => Instance::around(plugin, of, params, |own| {
                 own.clap.get_extension = Some(extensions::get);
+                own.clap.process = Some(input::process);
                 modulation::replace(own);
             }),
             (plugin, None) => plugin,

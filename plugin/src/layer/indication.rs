@@ -15,11 +15,14 @@ use std::ffi::c_char;
 pub(super) static INDICATION: clap_plugin_param_indication =
     clap_plugin_param_indication { set_mapping: Some(set_mapping), set_automation: Some(set_automation) };
 
-/// Place in the table of the parameter that hosts know by this number, which the wrapper makes of its id.
-fn index(number: u32) -> Option<usize> {
-    let of =
-        |id: &str| id.bytes().fold(0_u32, |hash, byte| hash.wrapping_mul(31).wrapping_add(byte.into())) & !(1 << 31);
-    PARAMS.iter().position(|info| of(info.id) == number)
+/// The number by which hosts know the parameter with an id, as the wrapper makes it. Real-time safe.
+pub(super) fn number(id: &str) -> u32 {
+    id.bytes().fold(0_u32, |hash, byte| hash.wrapping_mul(31).wrapping_add(byte.into())) & !(1 << 31)
+}
+
+/// Place in the table of the parameter that hosts know by this number.
+fn index(known: u32) -> Option<usize> {
+    PARAMS.iter().position(|info| number(info.id) == known)
 }
 
 /// Red, green and blue. A colour that is transparent would not be seen, and counts as none.

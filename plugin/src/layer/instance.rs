@@ -5,6 +5,8 @@ use crate::params::SprungParams;
 use clap_sys::ext::note_name::{CLAP_EXT_NOTE_NAME, clap_host_note_name};
 use clap_sys::ext::params::{CLAP_EXT_PARAMS, clap_plugin_params};
 use clap_sys::plugin::clap_plugin;
+use sprung::params::learned::Takeover;
+use std::cell::RefCell;
 use std::ffi::{CStr, c_char, c_void};
 use std::sync::Arc;
 
@@ -18,6 +20,8 @@ pub(super) struct Instance {
     pub(super) params: Arc<SprungParams>,
     /// The wrapper's extension for parameters, one of whose functions may be replaced.
     pub(super) knobs: Option<clap_plugin_params>,
+    /// Which controllers have hold of their parameters. For the audio thread alone.
+    pub(super) takeover: RefCell<Takeover>,
 }
 
 impl Instance {
@@ -35,7 +39,7 @@ impl Instance {
         // SAFETY: the plugin lives until it is destroyed.
         let functions = unsafe { *wrapper };
         let clap = clap_plugin { destroy: Some(destroy), on_main_thread: Some(on_main_thread), ..functions };
-        let mut own = Box::new(Self { clap, wrapper, host, params, knobs: None });
+        let mut own = Box::new(Self { clap, wrapper, host, params, knobs: None, takeover: RefCell::default() });
         own.knobs = own.wrapper_knobs().copied();
         replace(&mut own);
         Box::into_raw(own).cast()

@@ -6,7 +6,7 @@
 //! | `note_names` | the names of a kit's pads |
 //! | `discovery`, `preset_load` | the sounds of the factory and the user's, to be listed and loaded |
 //! | `state_context` | states for presets, which leave the window as it is |
-//! | `modulation` | modulation of the notes of a key or a channel |
+//! | `input`, `modulation` | controllers that turn knobs; modulation of the notes of a key or a channel |
 //! | `indication` | marks at knobs: what a controller is mapped to, and what is automated |
 //!
 //! A plugin that a host gets is a copy of the wrapper's (`instance`): all functions and the data are the wrapper's, but
@@ -15,7 +15,7 @@
 //! parameters behind that data, which the wrapper keeps to itself.
 //!
 //! This folder has the plugin's unsafe code for CLAP. What hosts pass is taken as CLAP defines it; null pointers, unknown
-//! ids and texts that are not UTF-8 are refused. Only `modulation` runs on the audio thread.
+//! ids and texts that are not UTF-8 are refused. Only `input` runs on the audio thread.
 
 #![allow(unsafe_code, reason = "CLAP is an interface of C")]
 
@@ -25,6 +25,7 @@ pub(crate) mod entry;
 mod extensions;
 mod host;
 mod indication;
+mod input;
 mod instance;
 mod modulation;
 mod note_names;

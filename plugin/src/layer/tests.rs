@@ -1,9 +1,12 @@
 //! The layer as a host in C calls it, also wrongly, where a host in Rust cannot look or would not go.
 
 use super::entry::ENTRY;
+use super::indication::number;
 use super::instance::Instance;
 use crate::marks::{Automation, Mapping, Mark};
+use clap_sys::audio_buffer::clap_audio_buffer;
 use clap_sys::color::clap_color;
+use clap_sys::events::*;
 use clap_sys::ext::note_name::{CLAP_EXT_NOTE_NAME, clap_plugin_note_name};
 use clap_sys::ext::param_indication::{
     CLAP_EXT_PARAM_INDICATION, CLAP_EXT_PARAM_INDICATION_COMPAT, clap_plugin_param_indication,
@@ -15,8 +18,10 @@ use clap_sys::factory::plugin_factory::{CLAP_PLUGIN_FACTORY_ID, clap_plugin_fact
 use clap_sys::factory::preset_discovery::*;
 use clap_sys::host::clap_host;
 use clap_sys::plugin::clap_plugin;
+use clap_sys::process::{CLAP_PROCESS_ERROR, clap_process};
 use clap_sys::version::CLAP_VERSION;
-use sprung::params::{PARAM_COUNT, PARAMS};
+use sprung::params::learned::Controllers;
+use sprung::params::{PARAM_COUNT, PARAMS, Param};
 use sprung::preset::Playable;
 use std::ffi::{CStr, c_void};
 use std::mem::zeroed;
@@ -197,4 +202,120 @@ fn the_host_is_asked_when_names_change_and_never_after_the_instance() {
     drop(host);
     load("Acoustic Kit");
     assert_eq!(asked.load(Relaxed), 3);
+}
+
+/// What a host is told of a parameter: the type of the event, its frame and, of values, the value.
+type Told = Vec<(u16, u32, Option<f64>)>;
+
+/// Plays a block with movements of controller 21, each with its frame. Returns what the host is told of a parameter.
+fn turn(plugin: *const clap_plugin, movements: &[(u32, u8)], param: u32) -> Told {
+    unsafe extern "C" fn size(list: *const clap_input_events) -> u32 {
+        // SAFETY: the list's context are the events below.
+        unsafe { (*(*list).ctx.cast::<Vec<clap_event_midi>>()).len() as u32 }
+    }
+    unsafe extern "C" fn get(list: *const clap_input_events, index: u32) -> *const clap_event_header {
+        // SAFETY: as above.
+        unsafe { &raw const (&(*(*list).ctx.cast::<Vec<clap_event_midi>>()))[index as usize].header }
+    }
+    unsafe extern "C" fn try_push(list: *const clap_output_events, event: *const clap_event_header) -> bool {
+        // SAFETY: the list's context is `told` below, and events have the structures of their types.
+        unsafe {
+            let (param, told) = &mut *(*list).ctx.cast::<(u32, Told)>();
+            let value = match (*event).type_ {
+                CLAP_EVENT_PARAM_VALUE => {
+                    let event: &clap_event_param_value = &*event.cast();
+                    (event.param_id == *param).then_some(Some(event.value))
+                }
+                CLAP_EVENT_PARAM_GESTURE_BEGIN | CLAP_EVENT_PARAM_GESTURE_END => {
+                    ((*event.cast::<clap_event_param_gesture>()).param_id == *param).then_some(None)
+                }
+                _ => None,
+            };
+            told.extend(value.map(|value| ((*event).type_, (*event).time, value)));
+            true
+        }
+    }
+    let midi = |&(time, position): &(u32, u8)| clap_event_midi {
+        header: clap_event_header {
+            size: size_of::<clap_event_midi>() as u32,
+            time,
+            space_id: CLAP_CORE_EVENT_SPACE_ID,
+            type_: CLAP_EVENT_MIDI,
+            flags: 0,
+        },
+        port_index: 0,
+        data: [0xB3, 21, position],
+    };
+    let mut events: Vec<_> = movements.iter().map(midi).collect();
+    let mut told: (u32, Told) = (param, Vec::new());
+    let mut sound = [[0.0_f32; 64]; 2];
+    let [left, right] = &mut sound;
+    let mut channels = [left.as_mut_ptr(), right.as_mut_ptr()];
+    // SAFETY: all that is passed is what CLAP says, and lives during the call.
+    unsafe {
+        let in_events = clap_input_events { ctx: (&raw mut events).cast(), size: Some(size), get: Some(get) };
+        let out_events = clap_output_events { ctx: (&raw mut told).cast(), try_push: Some(try_push) };
+        let mut output = clap_audio_buffer { data32: channels.as_mut_ptr(), channel_count: 2, ..zeroed() };
+        let block = clap_process {
+            frames_count: 64,
+            audio_outputs: &raw mut output,
+            audio_outputs_count: 1,
+            in_events: &raw const in_events,
+            out_events: &raw const out_events,
+            ..zeroed()
+        };
+        assert_ne!((*plugin).process.unwrap()(plugin, &block), CLAP_PROCESS_ERROR);
+    }
+    told.1
+}
+
+#[test]
+fn a_bound_controller_turns_its_knob_and_the_host_is_told_but_nothing_jumps() {
+    let host = host(false);
+    let plugin = create(&host, IDS[0]);
+    // SAFETY: all that is passed is what CLAP says.
+    let params = unsafe {
+        assert!((*plugin).init.unwrap()(plugin));
+        assert!((*plugin).activate.unwrap()(plugin, 48_000.0, 1, 64) && (*plugin).start_processing.unwrap()(plugin));
+        Instance::of(plugin).unwrap().params.clone()
+    };
+    let told = |time: u32, value: f64| {
+        [
+            (CLAP_EVENT_PARAM_GESTURE_BEGIN, None),
+            (CLAP_EVENT_PARAM_VALUE, Some(value)),
+            (CLAP_EVENT_PARAM_GESTURE_END, None),
+        ]
+        .map(|(kind, value)| (kind, time, value))
+        .to_vec()
+    };
+    let at = |position: u8| f32::from(position) / 127.0;
+    let (tilt, mode) = (&params.knobs()[Param::Tilt as usize], &params.knobs()[Param::Mode as usize]);
+    tilt.turn(0.5);
+    params.learned().publish(&Controllers::from([(21, Param::Tilt)]));
+    assert_eq!(turn(plugin, &[(0, 10), (20, 40)], number("tilt")), []);
+    assert_eq!(tilt.position(), 0.5, "it is not there yet");
+    let expected = [told(0, at(70).into()), told(7, at(100).into()), told(7, at(99).into())].concat();
+    assert_eq!(turn(plugin, &[(0, 70), (7, 100), (7, 99)], number("tilt")), expected, "once, at their frames");
+    assert_eq!(tilt.position(), at(99));
+    tilt.turn(0.1);
+    assert_eq!(turn(plugin, &[(63, 98)], number("tilt")), [], "something else has moved it");
+    params.learned().publish(&Controllers::from([(21, Param::Mode)]));
+    assert_eq!(turn(plugin, &[(5, 0), (6, 127)], number("mode")), [told(5, 0.0), told(6, 2.0)].concat(), "steps");
+    assert_eq!((mode.position(), tilt.position()), (1.0, 0.1));
+    params.learned().listen();
+    assert_eq!(turn(plugin, &[(0, 0)], number("mode")), []);
+    assert_eq!(
+        (params.learned().heard(), mode.position()),
+        (Some(21), 1.0),
+        "whoever listens hears it, and nobody else"
+    );
+    params.learned().stop();
+    params.learned().publish(&Controllers::new());
+    assert_eq!(turn(plugin, &[(0, 0)], number("mode")), [], "forgotten");
+    // SAFETY: as above.
+    unsafe {
+        (*plugin).stop_processing.unwrap()(plugin);
+        (*plugin).deactivate.unwrap()(plugin);
+    }
+    destroy(plugin);
 }

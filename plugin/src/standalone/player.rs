@@ -2,7 +2,8 @@
 
 use crate::live::Live;
 use crate::params::SprungParams;
-use sprung::engine::Event;
+use sprung::engine::{Event, EventKind};
+use sprung::params::learned::{Movement, Takeover};
 use sprung::realtime::convert::{DeviceSample, interleave};
 use sprung::realtime::player::MAX_BLOCK;
 use sprung::realtime::{BlockClock, Fade, LiveInputs, Moment, Source, Status};
@@ -13,6 +14,7 @@ pub(super) struct WindowPlayer {
     params: Arc<SprungParams>,
     live: Live,
     inputs: LiveInputs,
+    takeover: Takeover,
     clock: BlockClock,
     events: Vec<Event>,
     left: Vec<f32>,
@@ -30,6 +32,7 @@ impl WindowPlayer {
             params,
             events: Vec::with_capacity(inputs.capacity()),
             inputs,
+            takeover: Takeover::default(),
             clock: BlockClock::new(sample_rate),
             left: vec![0.0; MAX_BLOCK],
             right: vec![0.0; MAX_BLOCK],
@@ -55,7 +58,19 @@ impl Source for WindowPlayer {
             let start = (piece * MAX_BLOCK) as u32;
             let len = out.len() / channels;
             self.events.clear();
-            self.inputs.merge(&self.clock, start, start + len as u32, &mut self.events);
+            let (params, takeover) = (&self.params, &mut self.takeover);
+            self.inputs.merge(&self.clock, start, start + len as u32, &mut self.events, |_, _, kind| {
+                let EventKind::Control { controller, value: at } = kind else { return Some(kind) };
+                match takeover.follow(params.learned(), controller, at, |info| params.present(info)) {
+                    Movement::Free => return Some(kind),
+                    Movement::Nothing => {}
+                    Movement::Turns(info) => {
+                        params.knobs()[info.param as usize].turn(at);
+                        params.link().repaint.request_repaint();
+                    }
+                }
+                None
+            });
             let (left, right) = (&mut self.left[..len], &mut self.right[..len]);
             self.live.play(&self.params, &self.events, left, right);
             self.fade.apply(&self.status, left, right);
@@ -71,7 +86,9 @@ mod tests {
     use super::*;
     use crate::link::Touch;
     use crate::state::{State, VIEW};
-    use sprung::engine::{EventKind, Synth};
+    use sprung::engine::Synth;
+    use sprung::params::Param;
+    use sprung::params::learned::Controllers;
     use sprung::preset::Playable;
     use sprung::realtime::{LiveEvent, Stamp};
     use std::time::{Duration, Instant};
@@ -112,6 +129,30 @@ mod tests {
         fill(&mut player, 4_800);
         let after = fill(&mut player, 480).into_iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
         assert!(after < before / 100.0, "a knob is followed: {before} {after}");
+    }
+
+    #[test]
+    fn a_bound_controller_turns_its_knob_once_it_has_reached_it_and_does_nothing_else() {
+        let (mut player, [mut sender], params) = player();
+        params.learned().publish(&Controllers::from([(7, Param::Mode), (8, Param::Tilt)]));
+        let mut send = |controller, position: u8| {
+            let start = Instant::now();
+            let kind = EventKind::Control { controller, value: f32::from(position) / 127.0 };
+            sender.send(LiveEvent { stamp: Stamp::System(start), channel: 0, kind });
+            for since in [0, 10, 20].map(Duration::from_millis) {
+                player.fill(&mut [0.0_f32; 960], 2, Moment { now: start + since, called: since, heard: since });
+            }
+            [Param::Mode, Param::Tilt].map(|param| params.knobs()[param as usize].position())
+        };
+        let [mode, tilt] = send(1, 0);
+        let away = if tilt < 0.5 { 127 } else { 0 };
+        assert_eq!(send(8, away), [mode, tilt]);
+        let passed = if tilt < 0.5 { 0 } else { 127 };
+        assert_eq!(send(8, passed), [mode, f32::from(passed) / 127.0]);
+        params.knobs()[Param::Tilt as usize].turn(0.5);
+        assert_eq!(send(8, passed), [mode, 0.5], "the mouse has moved it");
+        assert_eq!(send(7, 0), [0.0, 0.5], "a choice");
+        assert_eq!(send(7, 127), [1.0, 0.5]);
     }
 
     #[test]

@@ -6,6 +6,8 @@
 mod automation;
 mod contexts;
 #[cfg(target_os = "linux")]
+mod controllers;
+#[cfg(target_os = "linux")]
 mod cpu;
 mod damage;
 #[cfg(target_os = "linux")]
@@ -133,6 +135,7 @@ fn main() -> ExitCode {
             "sizes-clap" | "sizes-vst3" | "zooms-clap" | "zooms-vst3" | "dots" => sizes::work(&work),
             "window" | "window-keys" | "window-playing" => window::work(&work),
             "tuning" => tuning::work(),
+            "controllers" => controllers::work(),
             _ => realtime::work(&work),
         };
     }
@@ -271,6 +274,9 @@ fn main() -> ExitCode {
         }
         Nothing: tuning {
             a_master_of_mts_esp_is_followed
+        }
+        Nothing: controllers {
+            a_bound_controller_has_the_bits_of_the_engine
         }
         Nothing: realtime {
             process_neither_allocates_nor_locks_nor_calls_the_system

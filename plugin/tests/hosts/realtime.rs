@@ -4,6 +4,7 @@
 //! system's library, and the kernel refuses every system call. (A lock made of atomic operations also needs a system
 //! call to wait.)
 
+use crate::controllers::bind;
 use crate::host::{Address, Instance, Player, Sent, open};
 use crate::patches::{drums, patches, state, state_of_kit};
 use crate::process::{command, scratch, succeeds, wait_until};
@@ -59,6 +60,8 @@ fn watched(work: &str) -> Command {
     }
     let mut command = command(work);
     command.env("LD_PRELOAD", probe);
+    // One of the controllers that are played.
+    bind(&mut command, &scratch("watched"), "tilt = 7\n");
     command
 }
 

@@ -213,6 +213,9 @@ impl App {
         for (shown, peak) in self.peaks.iter_mut().zip(telemetry.take_peaks()) {
             *shown = peak.max(*shown * fall);
         }
+        while let Some((channel, param, value)) = self.kits.next_moved() {
+            self.playing[usize::from(channel)].values.set(param, value);
+        }
         for (channel, playing) in (0..).zip(&mut self.playing) {
             let program = telemetry.program(channel);
             if let Some(number) = program.filter(|_| program != playing.program)

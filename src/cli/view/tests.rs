@@ -6,10 +6,12 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::Rect;
+use sprung::engine::EventKind;
 use sprung::params::Param;
+use sprung::params::learned::Controllers;
 use sprung::preset::library::Library;
 use sprung::preset::{KitPreset, Playable, Preset};
-use sprung::realtime::{LiveInputs, Moment, Player, Setup, Source, Status};
+use sprung::realtime::{LiveInputs, LiveSender, Moment, Player, Setup, Source, Status};
 use sprung::sound::Tuning;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -17,6 +19,7 @@ use std::time::{Duration, Instant};
 /// A view with a player that runs only when [`Stand::play`] is called.
 struct Stand {
     app: App,
+    midi: LiveSender,
     player: Player,
     epoch: Instant,
     played: Duration,
@@ -29,7 +32,7 @@ impl Stand {
     }
 
     fn named(device: &str, name: &str) -> Self {
-        let ([keys], inputs) = LiveInputs::new();
+        let ([keys, midi], inputs) = LiveInputs::new();
         let status = Arc::new(Status::default());
         let programs: Vec<_> = Preset::factory().iter().map(Preset::kit).collect();
         let kit = Preset { name: name.into(), ..Preset::factory()[0].clone() }.kit();
@@ -45,11 +48,12 @@ impl Stand {
             song: None,
         };
         let (player, kits) = Player::new(setup, inputs, None, status.clone());
+        let player = player.with_controllers(&Controllers::from([(21, Param::Tilt)]));
         let make = Box::new(Playable::kit);
         let folder = tempfile::tempdir().unwrap();
         let library = Some(Library::at(folder.path()));
         let desk = Desk { device: device.into(), status, keys, kits, kit, channels, programs, make, library };
-        Self { app: App::new(desk), player, epoch: Instant::now(), played: Duration::ZERO, folder }
+        Self { app: App::new(desk), midi, player, epoch: Instant::now(), played: Duration::ZERO, folder }
     }
 
     fn press(&mut self, code: KeyCode) {
@@ -335,4 +339,15 @@ fn the_help_fits_forty_columns() {
             assert!(screen.contains(text), "{text}: {screen}");
         }
     }
+}
+
+#[test]
+fn what_a_controller_moves_is_shown() {
+    let mut stand = Stand::new();
+    for value in [0.0, 1.0] {
+        stand.midi.send_now(3, EventKind::Control { controller: 21, value });
+        stand.play();
+    }
+    let tilt = |stand: &Stand, channel: usize| stand.app.playing[channel].values.get(Param::Tilt);
+    assert_eq!((tilt(&stand, 3), tilt(&stand, 2)), (Param::Tilt.info().max, Param::Tilt.info().default));
 }

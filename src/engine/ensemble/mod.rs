@@ -15,6 +15,7 @@ use super::synth::allowed;
 use super::zones::Owners;
 use super::{Snapshot, Synth, VoiceState};
 use crate::dsp::limiter::Work;
+use crate::params::Values;
 use crate::patch::Patch;
 use crate::sound::{Kit, Mix, Tuning};
 use crate::units::gain_from_db;
@@ -148,6 +149,12 @@ impl Ensemble {
     /// Real-time safe.
     pub fn set_tuning(&mut self, tuning: &Tuning) {
         self.parts.iter_mut().for_each(|part| part.synth.set_tuning(tuning));
+    }
+
+    /// The parameters of the kit that plays a channel (one above 15 is taken as 15), without modulation. Real-time safe.
+    pub fn values(&self, channel: u8) -> &Values {
+        let owner = self.owners.of(nearest_channel(channel));
+        self.parts[usize::from(owner)].synth.values()
     }
 
     /// The voices and masses that sound now, of all channels together. Real-time safe.

@@ -136,6 +136,35 @@ fn favourites_are_kept() {
 }
 
 #[test]
+fn controllers_are_kept_and_what_is_not_understood_is_not_written_over() {
+    let (_folder, library) = library();
+    assert_eq!(library.controllers().unwrap(), Controllers::new());
+    library.set_controller(Param::Decay, Some(21)).unwrap();
+    library.set_controller(Param::Gain, Some(7)).unwrap();
+    let all = library.set_controller(Param::Tilt, Some(21)).unwrap();
+    assert_eq!(all, Controllers::from([(7, Param::Gain), (21, Param::Tilt)]));
+    assert_eq!(library.set_controller(Param::Gain, None).unwrap(), library.controllers().unwrap());
+    assert_eq!(fs::read_to_string(library.controllers_file()).unwrap(), "tilt = 21\n");
+    let refused = library.set_controller(Param::Decay, Some(64)).unwrap_err().to_string();
+    assert!(refused.starts_with("decay: controller 64 is a pedal"), "{refused}");
+    for (text, part) in [
+        ("tilt 21", "expected"),
+        ("tilt = 21\ntilt = 22", "duplicate"),
+        ("tilt = 21\ndecay = 21", "both"),
+        ("size = 21", "size = 21: expected a parameter's id"),
+        ("tilt = \"x\"", "expected a parameter's id and a controller"),
+        ("tilt = 1000", "tilt = 1000"),
+        ("tilt = 123", "tilt: controller 123 ends notes"),
+    ] {
+        fs::write(library.controllers_file(), text).unwrap();
+        let message = library.controllers().unwrap_err().to_string();
+        assert!(message.contains("controllers.toml") && message.contains(part), "{text}: {message}");
+        assert_eq!(library.set_controller(Param::Gain, Some(7)).unwrap_err().to_string(), message);
+        assert_eq!(fs::read_to_string(library.controllers_file()).unwrap(), text, "not written over");
+    }
+}
+
+#[test]
 fn the_folder_is_where_the_system_keeps_data() {
     let find = |variables: &[(&str, &str)]| {
         data_folder(&|name| variables.iter().find(|(known, _)| *known == name).map(|(_, value)| value.into()))

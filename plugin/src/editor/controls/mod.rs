@@ -28,13 +28,21 @@ pub(super) struct Typing {
     pub(super) complaint: Option<String>,
 }
 
-/// A parameter that waits to be assigned to a controller.
+/// A parameter that waits for a source of a route.
 pub(super) struct Learning {
     pub(super) info: &'static ParamInfo,
     /// The number of controller movements at the last check.
     pub(super) seen: u64,
     /// Whether the user has been asked to move a controller.
     pub(super) is_prompted: bool,
+}
+
+/// What is to become of a parameter's controller.
+pub(super) enum Binding {
+    /// The next one that moves turns its knob; whether the user has been asked to move it.
+    Learn { info: &'static ParamInfo, is_prompted: bool },
+    /// It has none.
+    Forget(&'static ParamInfo),
 }
 
 /// The user's actions on parameters in progress.
@@ -44,8 +52,9 @@ pub(super) struct Interaction {
     /// Position of the dragged knob, more precise than the knob's own.
     pub(super) dragged: f64,
     pub(super) typing: Option<Typing>,
-    /// The parameter that waits to be assigned to a controller.
+    /// The parameter that waits for a source of a route.
     pub(super) learning: Option<Learning>,
+    pub(super) binding: Option<Binding>,
 }
 
 /// The text of the status line about the thing under the pointer.
@@ -90,11 +99,18 @@ impl Controls<'_> {
         info.format(self.value(info))
     }
 
-    /// What the host says of a parameter, and the same in words, to be put behind others.
+    /// What the host says of a parameter; the same in words, and its controller, to be put behind others.
     pub(super) fn mark(&self, info: &ParamInfo) -> (Option<Mark>, String) {
         let mark = self.params.mark_of(info.param as usize);
-        let text = mark.as_ref().map_or(String::new(), |mark| format!("   {}", mark.text()));
+        let words = mark.as_ref().map(Mark::text).into_iter().chain(self.controller(info));
+        let text = words.map(|words| format!("   {words}")).collect();
         (mark, text)
+    }
+
+    /// The controller of a parameter in words, if it has one.
+    pub(super) fn controller(&self, info: &ParamInfo) -> Option<String> {
+        let controller = self.params.learned().controller_of(info.param)?;
+        Some(format!("CC {controller} on any channel"))
     }
 
     /// The modulated values of a parameter in the sounding notes, the newest note's first. Notes that do not modulate

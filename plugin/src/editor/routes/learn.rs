@@ -1,4 +1,4 @@
-//! MIDI learn: the controller that the user moves next modulates a parameter, by a route.
+//! Routes that are learnt: what the user moves next modulates a parameter.
 
 use crate::editor::controls::{Controls, Learning};
 use crate::editor::routes::{change, source_name};

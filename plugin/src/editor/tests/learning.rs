@@ -1,18 +1,21 @@
-//! MIDI learn: the next controller that moves becomes a route.
+//! What is moved next becomes a route, or turns the knob.
 
+use super::fake_host::Call;
 use super::sounding::Band;
 use crate::editor::theme::{SIZE, Theme};
 use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use sprung::engine::EventKind;
 use sprung::params::Param;
+use sprung::params::learned::{Controllers, Movement, Takeover};
 use sprung::patch::routes::{Routes, Source, amount_param};
+use sprung::preset::library::Library;
 
 impl Band {
     fn learn(&mut self, name: &str) {
         self.stage.harness.get_by_role_and_label(Role::Slider, name).click_secondary();
         self.passes(3);
-        self.stage.button("MIDI learn");
+        self.stage.button("Learn a route");
         self.passes(2);
     }
 
@@ -62,4 +65,65 @@ fn escape_gives_up() {
     band.passes(3);
     band.control(1);
     assert!(band.stage.params.state() == before);
+}
+
+impl Band {
+    /// Picks an entry of a knob's menu.
+    fn pick(&mut self, name: &str, entry: &str) {
+        self.stage.harness.get_by_role_and_label(Role::Slider, name).click_secondary();
+        self.passes(3);
+        self.stage.button(entry);
+        self.passes(2);
+    }
+
+    /// Moves a controller, as the audio thread sees it.
+    fn turn(&mut self, controller: u8) -> Movement {
+        let params = self.stage.params.clone();
+        let movement = Takeover::default().follow(params.learned(), controller, 0.5, |info| params.present(info));
+        self.passes(3);
+        movement
+    }
+
+    fn kept(&self) -> Controllers {
+        Library::at(self.stage.folder.path()).controllers().unwrap()
+    }
+}
+
+#[test]
+fn the_next_controller_that_moves_turns_the_knob_and_is_kept() {
+    let mut band = Band::new("Marimba", SIZE, Theme::Dark);
+    band.pick("Mallet speed", "Learn a controller");
+    assert!(matches!(band.turn(64), Movement::Free) && band.kept().is_empty(), "a pedal stays one");
+    assert!(matches!(band.turn(21), Movement::Nothing));
+    assert_eq!(band.kept(), Controllers::from([(21, Param::MalletSpeed)]));
+    assert!(!matches!(band.turn(21), Movement::Free) && matches!(band.turn(22), Movement::Free));
+    // Another program has bound another one meanwhile.
+    Library::at(band.stage.folder.path()).set_controller(Param::Decay, Some(30)).unwrap();
+    band.pick("Mallet hardness", "Learn a controller");
+    band.turn(21);
+    assert_eq!(band.kept(), Controllers::from([(21, Param::MalletHardness), (30, Param::Decay)]));
+    band.stage.harness.get_by_role_and_label(Role::Slider, "Mallet hardness").click_secondary();
+    band.passes(3);
+    band.stage.harness.get_by_label("CC 21 on any channel");
+    band.stage.button("Forget the controller");
+    band.passes(2);
+    assert_eq!(band.kept(), Controllers::from([(30, Param::Decay)]));
+    assert!(matches!(band.turn(21), Movement::Free) && !matches!(band.turn(30), Movement::Free));
+    band.pick("Mallet speed", "Learn a controller");
+    band.stage.harness.key_press_modifiers(Modifiers::NONE, Key::Escape);
+    band.passes(3);
+    assert!(matches!(band.turn(21), Movement::Free) && band.kept().len() == 1, "given up");
+    assert!(band.stage.host.calls().iter().all(|call| matches!(call, Call::Menu(..))), "no knob has moved");
+}
+
+#[test]
+fn what_is_kept_and_not_understood_is_said_and_stays() {
+    let mut band = Band::new("Marimba", SIZE, Theme::Dark);
+    let file = band.stage.folder.path().join("controllers.toml");
+    std::fs::write(&file, "decay = \"x\"\n").unwrap();
+    band.pick("Mallet speed", "Learn a controller");
+    assert!(matches!(band.turn(21), Movement::Nothing));
+    assert!(matches!(band.turn(21), Movement::Free), "it cannot be kept");
+    band.stage.harness.get_by_label_contains("controllers.toml: decay = \"x\": expected");
+    assert_eq!(std::fs::read_to_string(file).unwrap(), "decay = \"x\"\n");
 }

@@ -1,6 +1,7 @@
 //! The window in its host: how it is made, resized and dropped.
 
 use super::Window;
+use crate::editor::binding;
 #[cfg(target_os = "linux")]
 use crate::editor::host::accessibility;
 use crate::editor::theme::{LEAST_SIZE, Theme};
@@ -82,6 +83,7 @@ impl Drop for Window {
         self.displays.release(link);
         self.play.release(link);
         self.pages.release(link);
+        binding::stop(&self.params, &mut self.interaction.binding);
         if let Some(host) = self.host.take() {
             let end = || self.interaction.gestures.end(&self.params, &host);
             // The wrapper panics if the plugin itself is being dropped; then the host no longer waits for the gesture's

@@ -7,6 +7,7 @@ mod requests;
 mod status;
 mod variation;
 
+use crate::editor::binding;
 use crate::editor::browser::Browser;
 use crate::editor::controls::history::History;
 use crate::editor::controls::shown::Shown;
@@ -137,6 +138,7 @@ impl Window {
     /// Prepares the window for being shown by a host.
     pub(super) fn open(&mut self, host: GuiContext) {
         self.host = Some(host);
+        self.message = binding::read(self.browser.library(), &self.params).unwrap_or_default();
         self.applied = None;
     }
 
@@ -252,7 +254,8 @@ impl Window {
         let is_typing = ui.ctx().egui_wants_keyboard_input();
         let searches = is_alone && !is_typing && ui.input(|input| input.key_pressed(Key::Slash));
         let played = is_alone.then(|| self.computer_keyboard.follow(ui, params.link())).flatten();
-        let learnt = learn::follow(ui, &mut controls);
+        let bound = binding::follow(ui, self.browser.library(), &mut controls);
+        let learnt = bound.or_else(|| learn::follow(ui, &mut controls));
         if let Some(messages) = learnt.or_else(|| params.link().take_messages()).or(played) {
             self.message = messages;
         }

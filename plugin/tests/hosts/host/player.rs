@@ -6,7 +6,7 @@ use super::event::Address;
 use super::instance::Instance;
 use clack_extensions::audio_ports::{AudioPortInfoBuffer, PluginAudioPorts};
 use clack_extensions::tail::{PluginTail, TailLength};
-use clack_host::events::event_types::NoteEndEvent;
+use clack_host::events::event_types::{NoteEndEvent, ParamValueEvent};
 use clack_host::events::io::{OutputEventBuffer, TryPushError};
 use clack_host::prelude::*;
 
@@ -24,6 +24,10 @@ pub(crate) struct Rendered {
     /// One vector of samples for each output channel.
     pub(crate) channels: Vec<Vec<f32>>,
     pub(crate) ended: Vec<Ended>,
+    /// The values of parameters that the plugin has told, with their frames.
+    pub(crate) values: Vec<(u64, ClapId, f64)>,
+    /// Whether nothing was told before something of an earlier frame.
+    pub(crate) is_in_order: bool,
 }
 
 /// The audio part of an instance. It may move to another thread.
@@ -50,18 +54,30 @@ pub(crate) struct Player {
     pub(crate) audio: Audio,
 }
 
-/// Stores the plugin's NOTE_END events up to its capacity, without allocating.
+/// Stores the plugin's NOTE_END events and values of parameters up to its capacity, without allocating.
 struct Ends {
     notes: Vec<(u32, Address)>,
+    values: Vec<(u32, ClapId, f64)>,
+    /// The latest frame of the block that was told, and whether none was told after a later one.
+    latest: u32,
+    is_in_order: bool,
 }
 
 impl OutputEventBuffer for Ends {
     fn try_push(&mut self, event: &UnknownEvent) -> Result<(), TryPushError> {
+        let time = event.header().time();
+        self.is_in_order &= time >= std::mem::replace(&mut self.latest, time);
+        if let Some(value) = event.as_event::<ParamValueEvent>()
+            && let Some(id) = value.param_id()
+            && self.values.len() < self.values.capacity()
+        {
+            self.values.push((time, id, value.value()));
+        }
         let Some(end) = event.as_event::<NoteEndEvent>() else { return Ok(()) };
         if self.notes.len() == self.notes.capacity() {
             return Err(TryPushError::new());
         }
-        self.notes.push((event.header().time(), end.pckn().into()));
+        self.notes.push((time, end.pckn().into()));
         Ok(())
     }
 }
@@ -88,7 +104,8 @@ impl Player {
 
     /// Plays `frames` frames of a song in blocks whose lengths `block` returns.
     pub(crate) fn render(&mut self, song: &[Timed], frames: usize, mut block: impl FnMut() -> usize) -> Rendered {
-        let mut rendered = Rendered { channels: vec![Vec::new(); self.audio.outputs.len()], ended: Vec::new() };
+        let mut rendered =
+            Rendered { channels: vec![Vec::new(); self.audio.outputs.len()], is_in_order: true, ..Rendered::default() };
         let mut events = EventBuffer::new();
         let (mut start, mut next) = (0, 0);
         while start < frames {
@@ -102,8 +119,10 @@ impl Player {
             for (channel, output) in rendered.channels.iter_mut().zip(&self.audio.outputs) {
                 channel.extend(&output[..len]);
             }
-            let ended = self.audio.sent_back.notes.iter();
-            rendered.ended.extend(ended.map(|&(time, note)| Ended { frame: start as u64 + u64::from(time), note }));
+            let (back, at) = (&self.audio.sent_back, |time: u32| start as u64 + u64::from(time));
+            rendered.ended.extend(back.notes.iter().map(|&(time, note)| Ended { frame: at(time), note }));
+            rendered.values.extend(back.values.iter().map(|&(time, id, value)| (at(time), id, value)));
+            rendered.is_in_order &= back.is_in_order;
             start += len;
             self.instance.run_callbacks();
         }
@@ -138,7 +157,12 @@ impl Audio {
             outputs,
             incoming: Vec::new(),
             in_place: false,
-            sent_back: Ends { notes: Vec::with_capacity(16_384) },
+            sent_back: Ends {
+                notes: Vec::with_capacity(16_384),
+                values: Vec::with_capacity(16_384),
+                latest: 0,
+                is_in_order: true,
+            },
             clock: 0,
         }
     }
@@ -175,7 +199,10 @@ impl Audio {
     /// Processes the next `frames` frames. Does not itself allocate.
     #[allow(unsafe_code)]
     pub(crate) fn process(&mut self, events: &EventBuffer, frames: usize) -> ProcessStatus {
-        self.sent_back.notes.clear();
+        let back = &mut self.sent_back;
+        (back.latest, back.is_in_order) = (0, true);
+        back.notes.clear();
+        back.values.clear();
         // Samples that the plugin does not write must be noticed.
         let unwritten = if self.in_place { 0.9 } else { f32::NAN };
         self.outputs.iter_mut().for_each(|channel| channel[..frames].fill(unwritten));

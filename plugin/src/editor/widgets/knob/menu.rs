@@ -1,5 +1,6 @@
-//! The menu of a parameter: type, reset, modulate, learn, and the host's own menu.
+//! The menu of a parameter: type, reset, a controller, modulate, and the host's own menu.
 
+use crate::editor::binding;
 use crate::editor::controls::Controls;
 use crate::editor::controls::gestures;
 use crate::editor::routes;
@@ -23,9 +24,10 @@ pub(crate) fn show(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
         controls.set(info, info.default);
         ui.close();
     }
+    binding::menu(ui, info, controls);
     routes::menu(ui, info, controls);
     let has_routes = matches!(controls.params.state().playable, Playable::Preset(_));
-    if info.is_modulatable() && has_routes && ui.button("MIDI learn").clicked() {
+    if info.is_modulatable() && has_routes && ui.button("Learn a route").clicked() {
         learn::begin(info, controls);
         ui.close();
     }
