@@ -32,19 +32,19 @@ pub(crate) enum Knob {
 }
 
 impl Knob {
-    fn new(info: &'static ParamInfo) -> Self {
+    /// With a position that is also its default.
+    fn new(info: &'static ParamInfo, position: f32) -> Self {
         let smoothed = matches!(info.change, Change::Smoothed(_));
         if matches!(info.unit, Unit::Count | Unit::Choice) {
             let range = IntRange::Linear { min: info.min as i32, max: info.max as i32 };
-            let knob = IntParam::new(info.name, info.default as i32, range)
+            let knob = IntParam::new(info.name, info.denormalise(position.into()) as i32, range)
                 .with_value_to_string(Arc::new(|value| info.format(value as f32)))
                 .with_string_to_value(Arc::new(|text| Some(info.parse(text).ok()? as i32)));
             return Self::Stepped(if smoothed { knob.with_poly_modulation_id(info.param as u32) } else { knob });
         }
-        let knob =
-            FloatParam::new(info.name, info.normalise(info.default) as f32, FloatRange::Linear { min: 0.0, max: 1.0 })
-                .with_value_to_string(Arc::new(|position| info.format(info.denormalise(f64::from(position)))))
-                .with_string_to_value(Arc::new(|text| Some(info.normalise(info.parse(text).ok()?) as f32)));
+        let knob = FloatParam::new(info.name, position, FloatRange::Linear { min: 0.0, max: 1.0 })
+            .with_value_to_string(Arc::new(|position| info.format(info.denormalise(f64::from(position)))))
+            .with_string_to_value(Arc::new(|text| Some(info.normalise(info.parse(text).ok()?) as f32)));
         Self::Continuous(if smoothed { knob.with_poly_modulation_id(info.param as u32) } else { knob })
     }
 
@@ -165,8 +165,7 @@ impl SprungParams {
         let loaded = Arc::new(state.loaded());
         let State { playable, positions, view, .. } = state;
         let note_names = note_names(&playable);
-        let knobs: Vec<Knob> = PARAMS.iter().map(Knob::new).collect();
-        knobs.iter().zip(positions).for_each(|(knob, position)| knob.turn(position));
+        let knobs = PARAMS.iter().zip(positions).map(|(info, position)| Knob::new(info, position)).collect();
         let may_sound = Collector::default();
         may_sound.keep(&loaded);
         let complaints = Arc::new([]);
