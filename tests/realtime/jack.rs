@@ -2,6 +2,7 @@
 
 use super::sandbox::{Running, Sandbox, signal, song, sprung, text, wait_until};
 use jack::{AudioIn, Client, ClientOptions, Control, MidiOut, ProcessScope, RawMidi};
+use sprung::params::Param;
 use sprung::units::{frequency_from_key, semitones_from_ratio};
 use std::fs::File;
 use std::process::{Child, Command, Stdio};
@@ -48,7 +49,10 @@ fn with_own_server(test: &str, body: impl FnOnce(&str)) {
             let passed = (1..=3).any(|attempt| {
                 let name = format!("sprung-{test}-{}-{attempt}", std::process::id());
                 let mut again = Command::new(std::env::current_exe().unwrap());
-                again.args(["--exact", &format!("jack::{test}")]).env(variable, name).stderr(Stdio::inherit());
+                again
+                    .args(["--include-ignored", "--exact", &format!("jack::{test}")])
+                    .env(variable, name)
+                    .stderr(Stdio::inherit());
                 let output = again.output().unwrap();
                 let said = String::from_utf8_lossy(&output.stdout);
                 // Not to stdout, where it would be counted as a result of another test.
@@ -63,7 +67,10 @@ fn with_own_server(test: &str, body: impl FnOnce(&str)) {
 
 fn start(sandbox: &Sandbox, arguments: &str) -> Running {
     let stderr = File::create(sandbox.path("stderr")).unwrap();
-    Running(sprung(arguments).current_dir(sandbox.folder()).stderr(stderr).spawn().unwrap())
+    let mut command = sprung(arguments);
+    // What the user of this machine has bound must not turn anything here.
+    command.current_dir(sandbox.folder()).env("XDG_DATA_HOME", sandbox.folder());
+    Running(command.stderr(stderr).spawn().unwrap())
 }
 
 /// Sends messages at frames counted from its start, and passes on the samples that it receives in each period, left and right.
@@ -180,6 +187,32 @@ fn live_notes_are_in_time_and_in_tune() {
         for (n, frame) in (onsets[0]..left.len() - RATE / 4).enumerate() {
             let expected = [left[frame], right[frame]];
             assert_eq!([recorded[2 * (start + n)], recorded[2 * (start + n) + 1]], expected, "frame {n}");
+        }
+    });
+}
+
+#[test]
+#[ignore = "waits for seconds to pass"]
+fn a_controller_that_is_learnt_turns_its_parameter() {
+    with_own_server("a_controller_that_is_learnt_turns_its_parameter", |name| {
+        let _server = Server::start(name);
+        let sandbox = Sandbox::new();
+        let arguments = "play --host jack --headless --learn tune=21 --set decay=0.05 --set release=0.05";
+        let child = start(&sandbox, arguments);
+        // Where it is played first, it has not reached the middle, where the parameter stands; the end is 48 semitones above it.
+        let moved = [(RATE, 10), (RATE + 9_000, 127), (RATE + 18_000, 64)];
+        let messages = moved.iter().flat_map(|&(at, position)| {
+            [(at, [0xB0, 21, position]), (at + 2_000, [0x90, 57, 127]), (at + 4_000, [0x80, 57, 64])]
+        });
+        let [left, _] = listen(messages.collect(), RATE + 3 * 9_000 + RATE / 2);
+        assert_eq!(child.interrupt(), Some(0), "{}", text(&sandbox.path("stderr")));
+        let onsets = onsets(&left);
+        assert_eq!(onsets.len(), 3, "{onsets:?}");
+        let middle = f64::from(Param::Tune.info().denormalise(64.0 / 127.0));
+        for (onset, semitones) in onsets.iter().zip([0.0, 48.0, middle]) {
+            let expected = frequency_from_key(57.0 + semitones, 440.0);
+            let cents = 100.0 * semitones_from_ratio(frequency(&left[*onset..onset + 1900]) / expected);
+            assert!(cents.abs() < 3.0, "{semitones}: {cents} cents off");
         }
     });
 }
