@@ -1,5 +1,6 @@
 //! Routes that are learnt: what the user moves next modulates a parameter.
 
+use crate::editor::binding;
 use crate::editor::controls::{Controls, Learning};
 use crate::editor::routes::{change, source_name};
 use egui::{Key, Ui};
@@ -15,6 +16,8 @@ const LEAST: f32 = 0.05;
 
 /// Waits for the next movement of a controller.
 pub(crate) fn begin(info: &'static ParamInfo, controls: &mut Controls) {
+    // A controller that is to be bound is not seen here.
+    binding::stop(controls.params, &mut controls.interaction.binding);
     let (seen, _) = controls.params.link().telemetry.moved();
     controls.interaction.learning = Some(Learning { info, seen, is_prompted: false });
 }

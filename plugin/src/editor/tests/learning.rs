@@ -113,6 +113,9 @@ fn the_next_controller_that_moves_turns_the_knob_and_is_kept() {
     band.stage.harness.key_press_modifiers(Modifiers::NONE, Key::Escape);
     band.passes(3);
     assert!(matches!(band.turn(21), Movement::Free) && band.kept().len() == 1, "given up");
+    band.pick("Mallet speed", "Learn a controller");
+    band.pick("Mallet speed", "Learn a route");
+    assert!(matches!(band.turn(22), Movement::Free), "a route is learnt in its place");
     assert!(band.stage.host.calls().iter().all(|call| matches!(call, Call::Menu(..))), "no knob has moved");
 }
 
