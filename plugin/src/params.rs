@@ -32,7 +32,7 @@ pub(crate) enum Knob {
 }
 
 impl Knob {
-    /// With a position that is also its default.
+    /// With a position that is also the host’s default; the window resets to the table’s.
     fn new(info: &'static ParamInfo, position: f32) -> Self {
         let smoothed = matches!(info.change, Change::Smoothed(_));
         if matches!(info.unit, Unit::Count | Unit::Choice) {

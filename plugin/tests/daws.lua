@@ -38,7 +38,9 @@ if step == "make" then
 elseif step == "outputs" then
 	local session = create_session(folder, "sprung", 48000)
 	assert(session, "no session")
+	local heard = 0
 	for track in add_track(session, 34):iter() do
+		heard = heard + 1
 		assert(track:n_outputs():n_audio() == 34, "the track has not all outputs")
 		-- The plugin starts with the next block, and the meters follow it.
 		sleep(1)
@@ -55,6 +57,7 @@ elseif step == "outputs" then
 			assert((level > -60) == is_third, "meter " .. meter .. " shows " .. level .. " dBFS")
 		end
 	end
+	assert(heard == 1, "Ardour has made no track")
 else
 	local session = load_session(folder, "sprung")
 	assert(session, "the session does not load")

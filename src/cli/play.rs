@@ -149,8 +149,9 @@ impl Args {
         let forgotten = self.forget.iter().map(|param| (*param, None));
         let changes = forgotten.chain(self.learn.iter().map(|(param, controller)| (*param, Some(*controller))));
         let Some(library) = Library::of_user() else {
-            let message = "the system names no folder in which it could be kept: expected a home folder";
-            return if changes.count() > 0 { Err(Error::value("--learn", message)) } else { Ok(Controllers::new()) };
+            let message = "the system names no folder for controllers: expected a home folder";
+            let option = if self.learn.is_empty() { "--forget" } else { "--learn" };
+            return if changes.count() > 0 { Err(Error::value(option, message)) } else { Ok(Controllers::new()) };
         };
         for (param, controller) in changes {
             library.set_controller(param, controller)?;

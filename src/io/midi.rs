@@ -128,7 +128,8 @@ fn parse(bytes: &[u8], Reading { lenient, pattern }: Reading) -> Result<MidiFile
     let beats_per_minute = |tempo: u32| (6e7 / f64::from(tempo)) as f32;
     let told = tempos.iter().map(|(tick, tempo)| (*tick, 0, EventKind::Tempo(beats_per_minute(*tempo))));
     events.splice(..0, told);
-    events.sort_by_key(|(tick, ..)| *tick);
+    // A reset comes before all else at its tick, in whichever track it is.
+    events.sort_by_key(|(tick, channel, kind)| (*tick, !master::is_reset(*channel, kind)));
     simultaneous::release_before_strike(&mut events);
     let events = master::spread(events)?;
     tunings.sort_by_key(|(tick, _)| *tick);

@@ -80,6 +80,11 @@ impl Learned {
         self.listener.store(LISTENING, Relaxed);
     }
 
+    /// Whether somebody waits, and nothing has moved yet.
+    pub fn is_listening(&self) -> bool {
+        self.listener.load(Relaxed) == LISTENING
+    }
+
     /// The controller that has moved since [`Learned::listen`].
     pub fn heard(&self) -> Option<u8> {
         Some(self.listener.load(Relaxed)).filter(|heard| *heard < 128)

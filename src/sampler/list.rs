@@ -15,7 +15,7 @@ pub(super) struct Line {
     /// The file, relative to the folder.
     pub(super) file: String,
     pub(super) frames: u64,
-    /// Its length, by which a file is told that was cut off or replaced since.
+    /// The file’s size, by which one that was cut off or replaced since is recognised.
     pub(super) bytes: u64,
     /// The first frame of its loop, and the one after the last.
     pub(super) looped: Option<[u64; 2]>,

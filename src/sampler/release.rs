@@ -19,8 +19,8 @@ const RANGE: (f64, f64) = (0.005, 30.0);
 /// The energy of a block of silence, in dB.
 const SILENT_DB: f64 = -120.0;
 
-/// The time in seconds in which the sound falls by 60 dB after the key is let go, by the line through the levels of all blocks until it has
-/// fallen by 40 dB; none if it is silent by then.
+/// The time in seconds in which the sound falls by 60 dB after the key is let go, by the line through the levels of all blocks
+/// until it has fallen by 40 dB; none if it is silent by then.
 pub(super) fn seconds(sampling: &Sampling, kit: &Arc<Kit>, key: u8, velocity: u8) -> Result<Option<f64>> {
     let sound = strike(sampling, kit, key, velocity, 0, [HELD, HEARD])?;
     Ok(fall_time(&sound, sampling.rate))

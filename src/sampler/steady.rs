@@ -10,10 +10,10 @@ const STEADY_DB: f64 = 1.0;
 const SHORTEST: f64 = 0.5;
 /// Seconds in which the end fades over.
 const FADE: f64 = 0.05;
-/// Least correlation of what fades over into each other. Of less, partials would be heard to cancel.
+/// Lowest correlation at which the end is faded over: below it, partials would be heard to cancel.
 const LEAST_LIKENESS: f64 = 0.7;
-/// Every how many frames likeness is looked at. What ensembles differ by lies far below the 3 kHz that this leaves at 48 kHz.
-const STRIDE: usize = 8;
+/// Frames per second that are compared in the search. What ensembles differ by lies far below the 3 kHz that these carry.
+const COMPARED: usize = 6000;
 
 /// The loop of a sound at a rate in Hz; none if it is not steady or never comes back to what it was. With a loop, the sound ends where
 /// the loop does, and its last frames lead to the loop’s first.
@@ -25,8 +25,9 @@ pub(super) fn find(sound: &mut [Vec<f32>; 2], rate: u32) -> Option<Loop> {
     if fade == 0 || starts[0] < fade || !is_steady(sound, starts[0]) {
         return None;
     }
+    let stride = (rate as usize / COMPARED).max(1);
     let candidates = starts.iter().flat_map(|start| (start + shortest..=frames).map(|end| [*start, end]));
-    let best = candidates.map(|ends| (likeness(sound, ends, fade, STRIDE), ends)).max_by(|a, b| a.0.total_cmp(&b.0));
+    let best = candidates.map(|ends| (likeness(sound, ends, fade, stride), ends)).max_by(|a, b| a.0.total_cmp(&b.0));
     let [start, end] = best?.1;
     let likeness = likeness(sound, [start, end], fade, 1);
     if likeness < LEAST_LIKENESS {

@@ -37,7 +37,7 @@ impl Prefix {
             }
         }
         println!("making {}, which takes a minute", prefix.0.display());
-        // Wine makes the folder alone.
+        // Wine makes only the last folder of the path.
         make_folder_of(&prefix.0)?;
         let mut boot = prefix.command("wineboot");
         run_to_end(boot.arg("-i"), "wine wineboot -i")?;

@@ -21,6 +21,7 @@ pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
     if let Some(bound) = controls.controller(info) {
         ui.label(bound);
         if ui.button("Forget the controller").clicked() {
+            stop(controls.params, &mut controls.interaction.binding);
             controls.interaction.binding = Some(Binding::Forget(info));
             ui.close();
         }
@@ -44,7 +45,12 @@ pub(super) fn follow(ui: &Ui, library: Option<&Library>, controls: &mut Controls
         }
         Binding::Learn { info, is_prompted } => {
             ui.ctx().request_repaint_after(PAUSE);
+            let waits = learned.is_listening();
             let Some(controller) = learned.heard() else {
+                if !waits {
+                    controls.interaction.binding = None;
+                    return Some("nothing was learnt: another window has ended it".to_owned());
+                }
                 let asks = !std::mem::replace(is_prompted, true);
                 return asks
                     .then(|| format!("{}: move the knob or fader that is to turn it; Escape gives up", info.name));

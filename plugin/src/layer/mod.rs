@@ -15,7 +15,8 @@
 //! parameters behind that data, which the wrapper keeps to itself.
 //!
 //! This folder has the plugin's unsafe code for CLAP. What hosts pass is taken as CLAP defines it; null pointers, unknown
-//! ids and texts that are not UTF-8 are refused. Only `input` runs on the audio thread.
+//! ids and texts that are not UTF-8 are refused. Only `input`, and what it calls, runs on the audio
+//! thread.
 
 #![allow(unsafe_code, reason = "CLAP is an interface of C")]
 

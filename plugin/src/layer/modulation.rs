@@ -13,7 +13,7 @@ use clap_sys::ext::params::{
 };
 use clap_sys::plugin::clap_plugin;
 
-/// Has an instance say of its parameters that they are modulated so.
+/// Replaces the wrapper's `get_info`, so that parameters say that they can be modulated by key and channel.
 pub(super) fn replace(own: &mut Instance) {
     if let Some(knobs) = &mut own.knobs {
         knobs.get_info = Some(get_info);

@@ -56,13 +56,18 @@ const INITIAL: [(u8, u8); 22] = [
 ];
 const INITIAL_VOLUME: u8 = 100;
 
+/// Whether an event resets all channels.
+pub(super) fn is_reset(channel: u8, kind: &EventKind) -> bool {
+    channel == ALL_CHANNELS && matches!(kind, EventKind::Control { controller: RESET, .. })
+}
+
 fn control((controller, value): (u8, u8)) -> EventKind {
     EventKind::Control { controller, value: f32::from(value) / 127.0 }
 }
 
 /// Replaces each volume and balance of the master by those of channels: a channel’s own volume times the master’s, as both have the
-/// same curve, and the balances added up. A reset gives all channels what they are to have at first, and the first program if they had got another. The
-/// events are in order of time.
+/// same curve, and the balances added up. A reset gives every channel [`INITIAL`], and program 0 if it has had another; mono
+/// mode and the portamento’s time stay. The events are in order of time.
 pub(super) fn spread(events: Vec<(u64, u8, EventKind)>) -> Result<Vec<(u64, u8, EventKind)>, String> {
     let mut volume = Shared::at(1.0, |own, master| own * master);
     let mut balance = Shared::at(CENTRE, |own, master| (own + (master - CENTRE)).clamp(0.0, 1.0));
@@ -70,7 +75,7 @@ pub(super) fn spread(events: Vec<(u64, u8, EventKind)>) -> Result<Vec<(u64, u8, 
     let mut spread = Vec::with_capacity(events.len());
     for (tick, channel, kind) in events {
         match kind {
-            EventKind::Control { controller: RESET, .. } if channel == ALL_CHANNELS => {
+            kind if is_reset(channel, &kind) => {
                 volume =
                     Shared { own: [f32::from(INITIAL_VOLUME) / 127.0; ALL_CHANNELS as usize], master: 1.0, ..volume };
                 balance = Shared::at(CENTRE, balance.together);
@@ -127,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reset_gives_channels_what_they_began_with() {
+    fn a_reset_gives_channels_what_general_midi_says() {
         let all = |controller, value| (1, ALL_CHANNELS, EventKind::Control { controller, value });
         let events = vec![
             (0, 3, EventKind::Program(5)),

@@ -1,4 +1,4 @@
-//! Edits of outputs beside the main one: a host that gives no buffers for some of them hears the others.
+//! Edits of ports beside the main one: a host that gives no buffers for some of them hears the others.
 
 use super::edit::{BUFFERS, CLAP_WRAPPER, Edit, WRAPPER, edit};
 
@@ -40,6 +40,27 @@ pub(super) const EDITS: &[Edit] = &[
         "                for output_buffer_slice in buffers.main_buffer.as_slice_immutable() {",
     ),
     // VST3 hosts give no pointers for the channels of a bus that is not active, but may give their number.
+    edit(
+        BUFFERS,
+        "            crate::nice_debug_assert!(input_channel_pointers.is_some());
+            match input_channel_pointers {
+                Some(input_channel_pointers) => {
+",
+        "            match input_channel_pointers {
+                Some(input_channel_pointers)
+                    if (0..input_channel_pointers.num_channels).all(|channel_idx| unsafe {
+                        !(*input_channel_pointers.ptrs.as_ptr().add(channel_idx)).is_null()
+                    }) =>
+                {
+",
+    ),
+    edit(
+        BUFFERS,
+        "                None => {
+                    for channel in input_storage.iter_mut() {",
+        "                _ => {
+                    for channel in input_storage.iter_mut() {",
+    ),
     edit(
         BUFFERS,
         "                    match output_channel_pointers {

@@ -10,6 +10,7 @@ use crate::marks::Mark;
 use crate::params::SprungParams;
 use gestures::Gestures;
 use history::History;
+use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
 use sprung::engine::SoundingNote;
 use sprung::params::{PARAMS, ParamInfo};
@@ -109,6 +110,10 @@ impl Controls<'_> {
 
     /// The controller of a parameter in words, if it has one.
     pub(super) fn controller(&self, info: &ParamInfo) -> Option<String> {
+        // There, controllers reach the plugin as parameters, and none is bound.
+        if self.host.plugin_api() == PluginApi::Vst3 {
+            return None;
+        }
         let controller = self.params.learned().controller_of(info.param)?;
         Some(format!("CC {controller} on any channel"))
     }

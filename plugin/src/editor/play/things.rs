@@ -84,7 +84,7 @@ impl Things {
             let response = choice(ui, tile, ("thing", name), is_now);
             let face = if is_now || response.hovered() { palette.raised } else { palette.ground };
             ui.painter().rect(tile, RADIUS, face, edge(&response, is_now, controls), StrokeKind::Inside);
-            // A quarter of a pixel lower, so that no edge lies on the centres of pixels, which one graphics driver fills and another does not.
+            // A quarter of a pixel lower: edges on the centres of pixels are filled by some graphics drivers and not by others.
             let picture = tile.with_max_y(tile.bottom() - 15.0).shrink2(vec2(7.0, 4.0)).translate(vec2(0.0, 0.25));
             face::paint(ui.painter(), picture, figure, &[], None, palette);
             let colour = if is_now { palette.text } else { palette.muted };
