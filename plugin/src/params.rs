@@ -1,6 +1,8 @@
 //! The host's parameters, made from the engine's table, and the rest of an instance's shared state.
 
-#![allow(unsafe_code, reason = "the wrapper takes parameters as pointers and has no safe way to set several at once")]
+#![allow(unsafe_code, reason = "the wrapper takes parameters as pointers")]
+
+mod knob;
 
 use crate::callback::Callback;
 use crate::editor::host::extent::Extent;
@@ -10,10 +12,9 @@ use crate::lock::lock;
 use crate::marks::{Mark, Marks};
 use crate::state::{self, Read, State, VIEW, View};
 use nice_plug::prelude::*;
-use nice_plug_core::params::InternalParamMut;
 use nice_plug_core::params::internals::ParamPtr;
 use sprung::params::learned::{Controllers, Learned};
-use sprung::params::{Change, PARAM_COUNT, PARAMS, ParamInfo, Unit};
+use sprung::params::{PARAM_COUNT, PARAMS, ParamInfo};
 use sprung::preset::Playable;
 use sprung::preset::library::Library;
 use sprung::sound::Collector;
@@ -23,84 +24,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard};
 
-/// A host's parameter.
-pub(crate) enum Knob {
-    /// The knob's position, 0–1. The wrapper's own curves would not give the engine's values.
-    Continuous(FloatParam),
-    /// A count, or the index of a choice.
-    Stepped(IntParam),
-}
-
-impl Knob {
-    /// With a position that is also the host’s default; the window resets to the table’s.
-    fn new(info: &'static ParamInfo, position: f32) -> Self {
-        let smoothed = matches!(info.change, Change::Smoothed(_));
-        if matches!(info.unit, Unit::Count | Unit::Choice) {
-            let range = IntRange::Linear { min: info.min as i32, max: info.max as i32 };
-            let knob = IntParam::new(info.name, info.denormalise(position.into()) as i32, range)
-                .with_value_to_string(Arc::new(|value| info.format(value as f32)))
-                .with_string_to_value(Arc::new(|text| Some(info.parse(text).ok()? as i32)));
-            return Self::Stepped(if smoothed { knob.with_poly_modulation_id(info.param as u32) } else { knob });
-        }
-        let knob = FloatParam::new(info.name, position, FloatRange::Linear { min: 0.0, max: 1.0 })
-            .with_value_to_string(Arc::new(|position| info.format(info.denormalise(f64::from(position)))))
-            .with_string_to_value(Arc::new(|text| Some(info.normalise(info.parse(text).ok()?) as f32)));
-        Self::Continuous(if smoothed { knob.with_poly_modulation_id(info.param as u32) } else { knob })
-    }
-
-    /// The knob's position 0–1, without modulation. Real-time safe.
-    pub(crate) fn position(&self) -> f32 {
-        match self {
-            Self::Continuous(knob) => knob.unmodulated_normalized_value(),
-            Self::Stepped(knob) => knob.unmodulated_normalized_value(),
-        }
-    }
-
-    /// Offset of the knob by modulation of the whole instrument. Real-time safe.
-    pub(crate) fn offset(&self) -> f32 {
-        // Read the position first, since the wrapper writes it last. If it changes in between, position plus offset is
-        // still the new modulated position.
-        let position = self.position();
-        match self {
-            Self::Continuous(knob) => knob.modulated_normalized_value() - position,
-            Self::Stepped(knob) => knob.modulated_normalized_value() - position,
-        }
-    }
-
-    /// The wrapper's name for the parameter.
-    pub(crate) fn as_ptr(&self) -> ParamPtr {
-        match self {
-            Self::Continuous(knob) => knob.as_ptr(),
-            Self::Stepped(knob) => knob.as_ptr(),
-        }
-    }
-
-    /// Sets the knob without telling the host. Real-time safe.
-    pub(crate) fn turn(&self, position: f32) {
-        match self {
-            Self::Continuous(knob) => turn(knob, position, self.offset()),
-            Self::Stepped(knob) => turn(knob, position, self.offset()),
-        }
-    }
-}
-
-/// Sets a knob that modulation has moved by `offset`. At the end of the range, the wrapper ignores a new value because
-/// the modulated value does not change: then the knob is set without modulation, and the modulation is applied again.
-fn turn<P: Param + InternalParamMut>(knob: &P, position: f32, offset: f32)
-where
-    P::Plain: PartialEq,
-{
-    // SAFETY: the methods only write atomics of a parameter that is borrowed here. They are marked unsafe because they do
-    // not notify the host; callers do that where it is needed.
-    unsafe {
-        knob._internal_set_normalized_value(position);
-        if knob.unmodulated_plain_value() != knob.preview_plain(position) {
-            knob._internal_modulate_value(0.0);
-            knob._internal_set_normalized_value(position);
-            knob._internal_modulate_value(offset);
-        }
-    }
-}
+pub(crate) use knob::Knob;
 
 /// The data that the audio thread reads at once.
 pub(crate) struct Look {
@@ -188,13 +112,18 @@ impl SprungParams {
     pub(crate) fn of_host(self) -> Self {
         static SHARED: LazyLock<Arc<Learned>> = LazyLock::new(|| {
             let learned = Learned::default();
-            match Library::of_user().map_or_else(|| Ok(Controllers::new()), |library| library.controllers()) {
-                Ok(controllers) => learned.publish(&controllers),
-                Err(error) => nice_warn!("no controller moves a parameter: {error}"),
+            if let Err(error) = read_controllers(&learned, Library::of_user().as_ref()) {
+                nice_warn!("no controller moves a parameter: {error}");
             }
             Arc::new(learned)
         });
         Self { learned: SHARED.clone(), ..self }
+    }
+
+    /// Reads again which controllers move parameters, since other programs may have changed it. If it is not understood, what was
+    /// known before holds on.
+    pub(crate) fn read_controllers(&self, library: Option<&Library>) -> sprung::Result<()> {
+        read_controllers(&self.learned, library)
     }
 
     /// The controllers that move parameters.
@@ -368,14 +297,15 @@ fn note_names(playable: &Playable) -> NoteNames {
     names.into()
 }
 
+fn read_controllers(learned: &Learned, library: Option<&Library>) -> sprung::Result<()> {
+    learned.publish(&library.map_or_else(|| Ok(Controllers::new()), Library::controllers)?);
+    Ok(())
+}
+
 // SAFETY: the pointers refer to knobs in a vector that is neither changed nor moved while `self` lives.
 unsafe impl Params for SprungParams {
     fn param_map(&self) -> Vec<(String, ParamPtr, String)> {
-        let pointer = |knob: &Knob| match knob {
-            Knob::Continuous(knob) => knob.as_ptr(),
-            Knob::Stepped(knob) => knob.as_ptr(),
-        };
-        let entry = |(info, knob): (&ParamInfo, &Knob)| (info.id.to_owned(), pointer(knob), info.section.to_owned());
+        let entry = |(info, knob): (&ParamInfo, &Knob)| (info.id.to_owned(), knob.as_ptr(), info.section.to_owned());
         PARAMS.iter().zip(&self.knobs).map(entry).collect()
     }
 

@@ -172,12 +172,7 @@ impl Library {
     /// # Errors
     /// [`Error::Io`] if the list cannot be read.
     pub fn favourites(&self) -> Result<BTreeSet<String>> {
-        let file = self.favourites_file();
-        let text = match fs::read_to_string(&file) {
-            Ok(text) => text,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
-            Err(error) => return Err(Error::io(file.display().to_string(), error)),
-        };
+        let text = read_if_there(&self.favourites_file())?;
         Ok(text.lines().map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned).collect())
     }
 
@@ -207,12 +202,8 @@ impl Library {
     pub fn controllers(&self) -> Result<Controllers> {
         let file = self.controllers_file();
         let wrong = |message: String| Error::format(file.display().to_string(), message);
-        let text = match fs::read_to_string(&file) {
-            Ok(text) => text,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Controllers::new()),
-            Err(error) => return Err(Error::io(file.display().to_string(), error)),
-        };
-        let table: toml::Table = text.parse().map_err(|error: toml::de::Error| wrong(error.message().to_owned()))?;
+        let table: toml::Table =
+            read_if_there(&file)?.parse().map_err(|error: toml::de::Error| wrong(error.message().to_owned()))?;
         let mut controllers = Controllers::new();
         for (id, number) in table {
             let expected =
@@ -290,6 +281,14 @@ fn text_of(preset: &Preset) -> Result<String> {
 fn free(mut places: impl Iterator<Item = PathBuf>, folder: &Path) -> Result<PathBuf> {
     let free = places.find(|place| !place.exists());
     free.ok_or_else(|| Error::value(folder.display().to_string(), "expected a folder with room for another file"))
+}
+
+/// The text of a file; of one that is not there, none.
+fn read_if_there(path: &Path) -> Result<String> {
+    match fs::read_to_string(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(String::new()),
+        text => text.map_err(|error| Error::io(path.display().to_string(), error)),
+    }
 }
 
 fn make_folder(folder: &Path) -> Result<()> {

@@ -29,12 +29,8 @@ pub(super) fn seconds(sampling: &Sampling, kit: &Arc<Kit>, key: u8, velocity: u8
 fn fall_time(sound: &[Vec<f32>; 2], rate: u32) -> Option<f64> {
     let rate = f64::from(rate);
     let (held, block) = ((HELD * rate) as usize, ((BLOCK * rate) as usize).max(1));
-    let level = |at: usize| -> f64 {
-        let samples = sound.iter().flat_map(|side| side.iter().skip(at).take(block));
-        10.0 * libm::log10(samples.map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>().max(1e-30))
-    };
     let last = sound[0].len().saturating_sub(block);
-    let levels: Vec<f64> = (held..=last).step_by(block).map(level).collect();
+    let levels: Vec<f64> = (held..=last).step_by(block).map(|at| level(sound, at, block)).collect();
     let first = *levels.first().filter(|level| **level > SILENT_DB)?;
     let fallen = levels.iter().take_while(|level| **level > first - FALL_DB).count().max(2).min(levels.len());
     let fall = -Line::through_values(&levels[..fallen])?.slope * rate / block as f64;
@@ -49,15 +45,18 @@ const MOST_FALL: f64 = 200.0;
 pub(super) fn fall(sound: &[Vec<f32>; 2], rate: u32) -> f64 {
     let count = |seconds: f64| ((seconds * f64::from(rate)) as usize).max(1);
     let (held, block) = (count(HELD), count(10.0 * BLOCK));
-    let level = |at: usize| -> f64 {
-        let samples = sound.iter().flat_map(|side| side.iter().skip(at).take(block));
-        10.0 * libm::log10(samples.map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>().max(1e-30))
-    };
+    let level = |at: usize| level(sound, at, block);
     let first = level(held.saturating_sub(block));
     let last = sound[0].len().saturating_sub(block);
     let Some(end) = (held..=last).step_by(block).take_while(|at| level(*at) > first - 60.0).last() else { return 0.0 };
     let seconds = (end + block - held) as f64 / f64::from(rate);
     ((first - level(end)) / seconds).clamp(0.0, MOST_FALL)
+}
+
+/// The energy in dB of a number of frames from one on, on both sides; −300 dB of silence.
+pub(super) fn level(sound: &[Vec<f32>; 2], from: usize, frames: usize) -> f64 {
+    let samples = sound.iter().flat_map(|side| side.iter().skip(from).take(frames));
+    10.0 * libm::log10(samples.map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>().max(1e-30))
 }
 
 #[cfg(test)]

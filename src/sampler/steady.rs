@@ -1,5 +1,6 @@
 //! Finds the loop of a sustained sound, and fades its end over into what precedes its beginning.
 
+use super::release::level;
 use crate::io::Loop;
 
 /// Shares of a sound that pass before its loop may begin: the attack is over by then in most.
@@ -67,12 +68,7 @@ fn gains(place: f64, likeness: f64) -> [f64; 2] {
 /// Whether both halves from a frame on are as loud.
 fn is_steady(sound: &[Vec<f32>; 2], start: usize) -> bool {
     let half = (sound[0].len() - start) / 2;
-    let level = |at: usize| {
-        let samples = sound.iter().flat_map(|side| &side[at..at + half]).map(|sample| f64::from(*sample));
-        10.0 * libm::log10(samples.map(|sample| sample * sample).sum())
-    };
-    // Silence is −∞ dB, and no difference of it is small.
-    (level(start) - level(start + half)).abs() < STEADY_DB
+    (level(sound, start, half) - level(sound, start + half, half)).abs() < STEADY_DB
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::params::SprungParams;
 use egui::{Key, Ui};
 use nice_plug_core::context::PluginApi;
 use sprung::params::ParamInfo;
-use sprung::params::learned::{Controllers, check_controller};
+use sprung::params::learned::check_controller;
 use sprung::preset::library::Library;
 use std::time::Duration;
 
@@ -88,14 +88,4 @@ pub(super) fn stop(params: &SprungParams, binding: &mut Option<Binding>) {
     if let Some(Binding::Learn { .. }) = binding.take() {
         params.learned().stop();
     }
-}
-
-/// Reads what is kept for the user, which other programs may have changed. Returns a message if it is not understood: what was
-/// known before holds on.
-pub(super) fn read(library: Option<&Library>, params: &SprungParams) -> Option<String> {
-    match library.map_or_else(|| Ok(Controllers::new()), Library::controllers) {
-        Ok(controllers) => params.learned().publish(&controllers),
-        Err(error) => return Some(error.to_string()),
-    }
-    None
 }

@@ -1,7 +1,8 @@
 //! The knobs as the host and the engine see them.
 
 use super::*;
-use sprung::params::Param as Row;
+use nice_plug_core::params::InternalParamMut;
+use sprung::params::{Change, Param as Row, Unit};
 
 #[test]
 fn the_host_sees_the_table() {

@@ -13,7 +13,7 @@ use std::mem::take;
 pub(super) const ALL_CHANNELS: u8 = 16;
 
 /// The balance of a channel or the master in the centre.
-pub(super) const CENTRE: f32 = 64.0 / 127.0;
+const CENTRE: f32 = 64.0 / 127.0;
 
 /// A controller that a master has as well: what channels and master have of it, and how both go together.
 struct Shared {

@@ -13,10 +13,7 @@ use sprung::preset::library::Library;
 
 impl Band {
     fn learn(&mut self, name: &str) {
-        self.stage.harness.get_by_role_and_label(Role::Slider, name).click_secondary();
-        self.passes(3);
-        self.stage.button("Learn a route");
-        self.passes(2);
+        self.pick(name, "Learn a route");
     }
 
     fn routes(&self) -> Routes {

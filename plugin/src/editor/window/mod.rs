@@ -138,7 +138,8 @@ impl Window {
     /// Prepares the window for being shown by a host.
     pub(super) fn open(&mut self, host: GuiContext) {
         self.host = Some(host);
-        self.message = binding::read(self.browser.library(), &self.params).unwrap_or_default();
+        let read = self.params.read_controllers(self.browser.library());
+        self.message = read.err().map_or_else(String::new, |error| error.to_string());
         self.applied = None;
     }
 
