@@ -5,7 +5,6 @@ use super::sound::SoundArgs;
 use super::terminal::{complain, complain_lines, print, warn};
 use super::{completion, interrupt, quantity, view};
 use clap_complete::ArgValueCompleter;
-use sprung::engine::telemetry::Load;
 use sprung::io::{Inputs, Output, Target};
 use sprung::params::Param;
 use sprung::params::learned::Controllers;
@@ -242,7 +241,7 @@ impl Stage {
         if !session.finish(&mut closing) {
             complain("warning", "the sound device does not answer; left it behind");
         }
-        say(&summary(&status.telemetry().load(), status.xruns(), sample_rate));
+        say(&summary(&status, sample_rate));
         let Some(Take { recording, .. }) = recording else { return Ok(()) };
         let recorded = recording.finish()?;
         let seconds = recorded.frames as f64 / f64::from(sample_rate);
@@ -257,13 +256,15 @@ impl Stage {
     }
 }
 
-fn summary(load: &Load, xruns: u64, sample_rate: u32) -> String {
+fn summary(status: &Status, sample_rate: u32) -> String {
+    let load = status.telemetry().load();
     format!(
-        "played {:.3} s in blocks of {:.0} frames: {} xruns; a block took {:.1} % of its time on average, {:.1} % at most, \
+        "played {:.3} s in blocks of {:.0} frames, heard {:.1} ms after their keys: {} xruns; a block took {:.1} % of its time on average, {:.1} % at most, \
          {} of {} more than all of it",
         load.frames as f64 / f64::from(sample_rate),
         load.frames as f64 / load.blocks.max(1) as f64,
-        xruns,
+        1000.0 * status.delay(),
+        status.xruns(),
         100.0 * load.mean_share,
         100.0 * load.worst_share,
         load.late_blocks,

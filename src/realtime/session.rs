@@ -70,6 +70,11 @@ impl<S: Source> Session<S> {
         &self.description
     }
 
+    /// Seconds from the time stamp of an event to the time at which the device says it is heard; 0 before the first block.
+    pub fn delay(&self) -> f64 {
+        self.status.delay()
+    }
+
     /// Frames per second.
     pub fn sample_rate(&self) -> u32 {
         self.sample_rate
@@ -161,7 +166,7 @@ impl<S: Source> Session<S> {
         self.status.halt_song();
         live.release_all();
         // Samples are heard this long after they were rendered.
-        let delay = Duration::from_secs_f64(self.status.delay()).min(RELEASE);
+        let delay = Duration::from_secs_f64(self.delay()).min(RELEASE);
         let start = Instant::now();
         if !self.wait(RELEASE, |status| status.telemetry().is_silent() && start.elapsed() > delay) {
             self.status.fade();

@@ -45,7 +45,7 @@ impl Status {
     }
 
     /// Seconds from the time stamp of an event to the time at which it is heard.
-    pub(crate) fn delay(&self) -> f64 {
+    pub fn delay(&self) -> f64 {
         f32::from_bits(self.delay.load(Relaxed)).into()
     }
 

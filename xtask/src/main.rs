@@ -41,7 +41,12 @@ enum Chore {
     /// Find what the test suite needs on this system, and install it where that is possible.
     Setup(Extent),
     /// Run the tests that protect every commit, setup included.
-    Test(Extent),
+    Test {
+        #[command(flatten)]
+        extent: Extent,
+        /// Only steps whose name contains this, such as Windows
+        only: Option<String>,
+    },
     /// Put the plugin's wrapper, with our corrections, where cargo finds it in the folder `plugin`. Other chores do it too.
     Patch,
     /// Build the plugin and put Sprung.clap and Sprung.vst3 into target/bundled, for another system into target/TRIPLE/bundled.
@@ -142,7 +147,7 @@ impl Place {
 fn main() -> ExitCode {
     let result = match Arguments::parse().chore {
         Chore::Setup(extent) => setup::run(extent.suite()),
-        Chore::Test(extent) => test::run(extent.suite()),
+        Chore::Test { extent, only } => test::run(extent.suite(), only.as_deref().unwrap_or_default()),
         Chore::Patch => patch::run().map(drop),
         Chore::Bundle { release, target } => {
             let profile = if release { Profile::Release } else { Profile::Debug };

@@ -131,13 +131,18 @@ impl Supervisor {
         let output = |device::Output { host, id, description }| Output { host, id, description };
         // A JACK server connects its ports itself.
         let ports = if self.session.is_jack() { vec![] } else { midi_ports::names() };
-        let playing = if self.session.is_playing() { self.session.description() } else { "" };
+        let delay = 1000.0 * self.session.delay();
+        let playing = if self.session.is_playing() {
+            format!("{}, heard {delay:.1} ms after each key", self.session.description())
+        } else {
+            String::new()
+        };
         Devices {
             outputs: device::outputs().into_iter().map(output).collect(),
             rates: self.session.rates().to_vec(),
             ports: ports.iter().map(|name| lasting(name).to_owned()).collect(),
             chosen: self.chosen.clone(),
-            playing: playing.to_owned(),
+            playing,
         }
     }
 }

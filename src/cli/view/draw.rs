@@ -29,6 +29,7 @@ const HELP: &[&str] = &[
     "/  Esc         search, all again",
     "W  Ctrl-S      save under a name",
     "Mouse          play, choose, drag",
+    "ms             from a key to its sound",
     "xruns, late    of the device, of us",
     "Ctrl-C         end",
 ];
@@ -64,6 +65,7 @@ fn head(app: &App, frame: &mut Frame, area: Rect) {
     let late = app.load.late_blocks;
     let mut numbers = Line::from(vec![
         Span::raw(format!("{:3} voices ", app.snapshot.voices)),
+        Span::raw(format!("{:.0} ms ", 1000.0 * app.status.delay())),
         if share > 70.0 { Span::raw(format!("{share:3.0} % ")).red() } else { Span::raw(format!("{share:3.0} % ")) },
         if xruns > 0 { dry.red() } else { dry.dark_gray() },
     ]);
