@@ -259,8 +259,8 @@ impl Stage {
 fn summary(status: &Status, sample_rate: u32) -> String {
     let load = status.telemetry().load();
     format!(
-        "played {:.3} s in blocks of {:.0} frames, heard {:.1} ms after their keys: {} xruns; a block took {:.1} % of its time on average, {:.1} % at most, \
-         {} of {} more than all of it",
+        "played {:.3} s in blocks of {:.0} frames, heard {:.1} ms after their keys: {} xruns; a block took {:.1} % of its \
+         time on average, {:.1} % at most, {} of {} more than all of it",
         load.frames as f64 / f64::from(sample_rate),
         load.frames as f64 / load.blocks.max(1) as f64,
         1000.0 * status.delay(),

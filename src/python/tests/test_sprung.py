@@ -24,7 +24,7 @@ PRESETS = ["Kick", "Snare", "Marimba", "Church Bell", "Ride", "Steel Guitar", "G
 
 def command(*arguments: str, code: int = 0) -> str:
     """Runs the command, and gives what it writes to stderr."""
-    done = subprocess.run([COMMAND, *arguments], capture_output=True, text=True)
+    done = subprocess.run([COMMAND, *arguments], capture_output=True, encoding="utf-8")
     assert done.returncode == code, done.stderr
     return done.stderr
 
