@@ -119,7 +119,8 @@ fn a_song_reaches_the_device_and_the_recording_with_the_bits_of_render() {
         assert_eq!(device.start(&arguments).wait(), Some(0), "{}", device.stderr());
         let (expected, recorded) = (device.sandbox.floats("expected.wav"), device.sandbox.floats("take.wav"));
         let stderr = device.stderr();
-        assert!(stderr.contains(&format!("in blocks of {buffer} frames: 0 xruns")), "{stderr}");
+        assert!(stderr.contains(&format!("in blocks of {buffer} frames, heard ")), "{stderr}");
+        assert!(stderr.contains(" ms after their keys: 0 xruns"), "{stderr}");
         let captured = floats(&device.reader.join().unwrap());
         assert!(expected.iter().any(|sample| sample.abs() > 0.1), "it sounds");
         assert_same_bits(&captured, &expected);
