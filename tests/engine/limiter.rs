@@ -195,7 +195,7 @@ fn play(rate: u32, patch: &Patch, events: &[Event], seconds: f64) -> Stereo {
 
 #[test]
 fn a_chord_of_some_presets_stays_below_full_scale() {
-    chords(24);
+    chords(8);
 }
 
 #[test]
@@ -220,7 +220,7 @@ fn chords(step: usize) {
 
 #[test]
 fn a_rendered_chord_of_some_presets_stays_below_full_scale_and_tells_how_much_was_lowered() {
-    rendered_chords(24);
+    rendered_chords(8);
 }
 
 #[test]
