@@ -17,7 +17,7 @@ use serde_json::{Map, Value};
 use sprung::params::{PARAM_COUNT, PARAMS, Param, Unit, Values};
 use sprung::patch::Patch;
 use sprung::patch::routes::amount_param;
-use sprung::preset::{Guide, Playable, Preset};
+use sprung::preset::{Playable, Preset};
 use std::collections::BTreeMap;
 
 /// The wrapper's name for the state.
@@ -106,10 +106,7 @@ struct Saved {
 
 impl Default for State {
     fn default() -> Self {
-        let (name, author, tags, comment) = ("Init".to_owned(), String::new(), Vec::new(), String::new());
-        let (guide, patch) = (Guide::default(), Patch::default());
-        let preset = Preset { name, author, tags, comment, guide, patch, tuning: None };
-        Self::new(Playable::Preset(preset), 0, VIEW)
+        Self::new(Playable::Preset(Preset::new("Init", Patch::default())), 0, VIEW)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The descriptive part of preset and kit files: name, author, tags and comment.
+//! The descriptive part of preset and kit files: name, author, tags, comment and details.
 
 use super::complaints::Complaints;
 use super::value::unexpected;
@@ -18,6 +18,7 @@ pub(super) struct About {
     pub(super) author: String,
     pub(super) tags: Vec<String>,
     pub(super) comment: String,
+    pub(super) details: String,
 }
 
 impl About {
@@ -30,15 +31,18 @@ impl About {
         let name = name.unwrap_or_else(|| UNNAMED.to_owned());
         let author = label(table, "author", "", complaints);
         let tags = tags(table, complaints);
-        Self { name, author, tags, comment: complaints.take("", text(table, "comment", "")).unwrap_or_default() }
+        let [comment, details] =
+            ["comment", "details"].map(|key| complaints.take("", text(table, key, "")).unwrap_or_default());
+        Self { name, author, tags, comment, details }
     }
 }
 
-/// Writes the fields as lines of TOML.
-pub(super) fn about_to_toml([name, author, comment]: [&str; 3], tags: &[String]) -> String {
+/// Writes the fields as lines of TOML; the details only if there are any.
+pub(super) fn about_to_toml([name, author, comment, details]: [&str; 4], tags: &[String]) -> String {
     let tags: Vec<String> = tags.iter().map(|tag| toml_string(tag)).collect();
     let [name, author, comment] = [name, author, comment].map(toml_string);
-    format!("name = {name}\nauthor = {author}\ntags = [{}]\ncomment = {comment}\n", tags.join(", "))
+    let details = if details.is_empty() { String::new() } else { format!("details = {}\n", toml_string(details)) };
+    format!("name = {name}\nauthor = {author}\ntags = [{}]\ncomment = {comment}\n{details}", tags.join(", "))
 }
 
 fn text(table: &Table, key: &str, place: &str) -> Result<String, String> {

@@ -12,8 +12,10 @@ use crate::patch::Patch;
 use std::fmt::Write;
 use toml::{Table, Value};
 
-const KEYS: [&str; 12] =
-    ["format", "name", "author", "tags", "comment", "modes", "body", "second", "joint", "routes", "params", "tuning"];
+const KEYS: [&str; 13] = [
+    "format", "name", "author", "tags", "comment", "details", "modes", "body", "second", "joint", "routes", "params",
+    "tuning",
+];
 
 /// All keys.
 fn known_keys() -> Vec<&'static str> {
@@ -39,7 +41,7 @@ pub(super) fn read(table: &Table, complaints: &mut Complaints) -> Result<Preset,
         None => return Err(format!("there is no ‘format’: expected format = {FORMAT_VERSION}")),
     }
     check_keys(table, "", &known_keys(), complaints);
-    let About { name, author, tags, comment } = About::read(table, complaints);
+    let About { name, author, tags, comment, details } = About::read(table, complaints);
     let mut patch = Patch::default();
     match table.get("params") {
         Some(Value::Table(params)) => read_params(params, &mut patch, complaints),
@@ -51,7 +53,7 @@ pub(super) fn read(table: &Table, complaints: &mut Complaints) -> Result<Preset,
     routes::read(table, &mut patch, complaints);
     let tuning = tuning::read(table, complaints);
     let guide = Guide::read(table, complaints);
-    Ok(Preset { name, author, tags, comment, guide, patch, tuning })
+    Ok(Preset { name, author, tags, comment, details, guide, patch, tuning })
 }
 
 fn read_params(params: &Table, patch: &mut Patch, complaints: &mut Complaints) {
@@ -67,8 +69,8 @@ fn read_params(params: &Table, patch: &mut Patch, complaints: &mut Complaints) {
 
 pub(super) fn to_toml(preset: &Preset) -> String {
     let mut out = format!("format = {FORMAT_VERSION}\n");
-    let Preset { name, author, tags, comment, .. } = preset;
-    out.push_str(&about_to_toml([name, author, comment], tags));
+    let Preset { name, author, tags, comment, details, .. } = preset;
+    out.push_str(&about_to_toml([name, author, comment, details], tags));
     out.push_str(&preset.guide.to_toml());
     out.push_str(&mode_list::to_toml(&preset.patch.modes));
     out.push_str(&routes::to_toml(&preset.patch));
@@ -183,7 +185,7 @@ mod tests {
             ["\u{1b}[2J", "\u{202e}\"gnp\"\\", "a\tb\n\u{9b}1m", "'\u{2066}'\n\"\"\"", "plain \"quotes\"\nand 'lines'"]
         {
             let mut preset = read_text("format = 1\nname = \"a\"").unwrap();
-            preset.comment = text.to_owned();
+            (preset.comment, preset.details) = (text.to_owned(), text.to_owned());
             preset.tags = vec!["\u{200f}b".to_owned()];
             let written = preset.to_toml();
             assert_eq!(printable_lines(&written), written);
@@ -216,7 +218,7 @@ mod tests {
         #[test]
         fn presets_survive_their_file_exactly(
             texts in proptest::collection::vec("[^\\p{C}\\s]{1,20}", 3),
-            comment in ".*\n?.*",
+            [comment, details] in [".*\n?.*", ".*\n?.*"],
             positions in proptest::collection::vec(0.0..=1.0f64, PARAM_COUNT),
             modes in proptest::collection::vec(any_mode(), 1..=MAX_MODES),
             phases in option::of(proptest::collection::vec(-PI..=PI, MAX_MODES)),
@@ -234,7 +236,7 @@ mod tests {
             routes.into_iter().enumerate().for_each(|(place, route)| patch.routes.set(place, route));
             let [name, author, tag] = <[String; 3]>::try_from(texts).unwrap();
             let guide = Guide::default();
-            let preset = Preset { name, author, tags: vec![tag], comment, guide, patch, tuning: None };
+            let preset = Preset { name, author, tags: vec![tag], comment, details, guide, patch, tuning: None };
             let text = preset.to_toml();
             prop_assert_eq!(read_text(&text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?, preset);
         }

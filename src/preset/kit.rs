@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// The kit format version that is read and written.
 pub(crate) const KIT_VERSION: i64 = 1;
 
-/// Presets on keys, with name, author, tags and comment.
+/// Presets on keys, with name, author, tags, comment and details.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KitPreset {
     /// Name; never empty.
@@ -18,8 +18,10 @@ pub struct KitPreset {
     pub author: String,
     /// Words to search for.
     pub tags: Vec<String>,
-    /// Description, and how to play it.
+    /// Description for musicians, and how to play it.
     pub comment: String,
+    /// How it is made, and where its figures come from.
+    pub details: String,
     /// Maximum number of notes that sound at once.
     pub voices: u8,
     /// Values of effects behind the voices. They replace the values that the sounds have in common.
@@ -80,11 +82,19 @@ impl Playable {
         }
     }
 
-    /// Its description.
+    /// Its description for musicians.
     pub fn comment(&self) -> &str {
         match self {
             Self::Preset(preset) => &preset.comment,
             Self::Kit(kit) => &kit.comment,
+        }
+    }
+
+    /// How it is made, and where its figures come from; often empty.
+    pub fn details(&self) -> &str {
+        match self {
+            Self::Preset(preset) => &preset.details,
+            Self::Kit(kit) => &kit.details,
         }
     }
 

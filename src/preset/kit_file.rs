@@ -14,7 +14,7 @@ use crate::units::{key_from_note_name, note_name, parse_key};
 use std::fmt::Write;
 use toml::{Table, Value};
 
-const KEYS: [&str; 8] = ["kit", "name", "author", "tags", "comment", "voices", "params", "keys"];
+const KEYS: [&str; 9] = ["kit", "name", "author", "tags", "comment", "details", "voices", "params", "keys"];
 const PAD_KEYS: [&str; 8] = ["key", "name", "sound", "pitch", "gain", "pan", "choke", "output"];
 
 /// Finds the preset with the name that a kit uses.
@@ -43,13 +43,14 @@ fn read(table: &Table, version: &Value, find: Find, complaints: &mut Complaints)
         other => return Err(format!("kit {other} is unknown: this version reads kit = {KIT_VERSION}")),
     }
     check_keys(table, "", &KEYS, complaints);
-    let About { name, author, tags, comment } = About::read(table, complaints);
+    let About { name, author, tags, comment, details } = About::read(table, complaints);
     let voices = number(table, "voices", Param::Voices, "", complaints).unwrap_or(Param::Voices.info().max);
     let mut kit = KitPreset {
         name,
         author,
         tags,
         comment,
+        details,
         voices: voices as u8,
         params: read_params("params", table.get("params"), Param::is_behind_voices, complaints),
         sounds: vec![],
@@ -171,8 +172,8 @@ fn read_pan(value: Option<&Value>) -> Result<f32, String> {
 
 /// Writes a kit. `{:?}` writes a float as the shortest text that reads back as the same number, and that is valid TOML.
 pub(super) fn to_toml(kit: &KitPreset) -> String {
-    let KitPreset { name, author, tags, comment, voices, params, sounds, pads } = kit;
-    let mut out = format!("kit = {KIT_VERSION}\n{}", about_to_toml([name, author, comment], tags));
+    let KitPreset { name, author, tags, comment, details, voices, params, sounds, pads } = kit;
+    let mut out = format!("kit = {KIT_VERSION}\n{}", about_to_toml([name, author, comment, details], tags));
     if f32::from(*voices) != Param::Voices.info().max {
         let _ = writeln!(out, "voices = {voices}");
     }
@@ -218,7 +219,7 @@ mod tests {
 
     #[test]
     fn a_kit_is_read_in_every_notation_and_written_back() {
-        let text = "kit = 1\nname = \"k\"\nauthor = \"a\"\ntags = [\"t\"]\ncomment = \"c\\n\"\nvoices = 7\n\
+        let text = "kit = 1\nname = \"k\"\nauthor = \"a\"\ntags = [\"t\"]\ncomment = \"c\\n\"\ndetails = \"d\"\nvoices = 7\n\
                     keys = [{ key = \"C2\", sound = \"Kick\" }, { key = 38, output = \"main\", sound = \"snare\", pitch = \"60.5\", gain = \"-3 dB\" },\
                     { key = \"39\", sound = \"Kick\", pitch = \"F#3\", pan = -0.3, choke = 0, name = \"K\" },\
                     { key = \"G9\", sound = \"Clap\", pitch = 41, gain = 2, choke = 16, output = 16 }]";

@@ -1,4 +1,4 @@
-//! Presets and kits: a patch with name, author, tags and comment, as a file or built in, and presets assigned to keys.
+//! Presets and kits: a patch with name, author, tags, comment and details, as a file or built in, and presets assigned to keys.
 
 mod about;
 mod body;
@@ -40,7 +40,7 @@ pub use tuning::OwnTuning;
 /// The preset format version that is read and written.
 pub(crate) const FORMAT_VERSION: i64 = 1;
 
-/// A patch with name, author, tags and comment.
+/// A patch with name, author, tags, comment and details.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preset {
     /// Name by which it is listed and found; never empty.
@@ -49,8 +49,10 @@ pub struct Preset {
     pub author: String,
     /// Words to search for.
     pub tags: Vec<String>,
-    /// Description, and how to play it.
+    /// Description for musicians, and how to play it.
     pub comment: String,
+    /// How it is made, and where its figures come from.
+    pub details: String,
     /// Family, keys, macro names and phrase, which do not change the sound.
     pub guide: Guide,
     /// The sound.
@@ -62,8 +64,9 @@ pub struct Preset {
 impl Preset {
     /// A preset with nothing but a name and a sound. Allocates.
     pub fn new(name: impl Into<String>, patch: Patch) -> Self {
-        let (author, tags, comment, guide) = (String::new(), Vec::new(), String::new(), Guide::default());
-        Self { name: name.into(), author, tags, comment, guide, patch, tuning: None }
+        let [author, comment, details] = [const { String::new() }; 3];
+        let (tags, guide) = (Vec::new(), Guide::default());
+        Self { name: name.into(), author, tags, comment, details, guide, patch, tuning: None }
     }
 
     /// The sound of the preset, with its own tuning if it has one. Allocates.

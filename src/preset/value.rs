@@ -6,12 +6,17 @@ use crate::params::{PARAMS, Param, ParamInfo, Unit};
 use std::fmt::Display;
 use toml::{Table, Value};
 
+/// Most names that an error lists. A preset has 17 keys, and over a hundred parameters.
+const MOST_LISTED: usize = 24;
+
 /// Checks that a table has no other keys than `known`. `place` is its path: empty, or ending in a dot.
 pub(super) fn check_keys(table: &Table, place: &str, known: &[&str], complaints: &mut Complaints) {
     for key in table.keys().filter(|key| !known.contains(&key.as_str())) {
         complaints.add(match nearest(key, known.iter().copied()) {
             Some(near) => format!("unknown key ‘{place}{key}’; the nearest is {near}"),
-            None if known.len() <= 16 => format!("unknown key ‘{place}{key}’: expected one of {}", known.join(", ")),
+            None if known.len() <= MOST_LISTED => {
+                format!("unknown key ‘{place}{key}’: expected one of {}", known.join(", "))
+            }
             None => format!("unknown key ‘{place}{key}’; ‘sprung params’ shows them all"),
         });
     }

@@ -188,8 +188,7 @@ fn parameters_that_a_state_does_not_name_have_their_defaults() {
     let short = r#"{"format":1,"preset":"format = 1\nname = \"Short\"\n[params]\ngain = -3","window":[880,640]}"#;
     params.deserialize_fields(&fields(short.to_owned()));
     let patch = Patch::default().with(Param::Gain, -3.0);
-    let (name, author, tags, comment) = ("Short".to_owned(), String::new(), Vec::new(), String::new());
-    let preset = Preset { name, author, tags, comment, guide: Guide::default(), patch, tuning: None };
+    let preset = Preset::new("Short", patch);
     assert_eq!(params.state(), State::new(Playable::Preset(preset), 0, View { size: [880, 640], ..VIEW }));
     assert!(params.complaints().is_empty());
 }

@@ -227,6 +227,10 @@ fn article(one: &Auditioned) -> String {
         }
         Playable::Kit(kit) => format!(" · {} pads", kit.pads.len()),
     };
+    let details = match playable.details() {
+        "" => String::new(),
+        details => format!("<p class=\"note\">{}</p>\n", escaped(details)),
+    };
     let rows: String = one.measures.iter().map(row).collect();
     let table = if rows.is_empty() {
         rows
@@ -236,10 +240,11 @@ fn article(one: &Auditioned) -> String {
         )
     };
     format!(
-        "<article data-family=\"{family}\" data-text=\"{text}\"><h2>{name}</h2>\n<p>{comment}</p>\n<p class=\"note\">{family} · {tags}{keys} · 16 voices {speed:.0}× real time</p>\n<audio controls preload=\"none\" src=\"{file}.wav\"></audio>\n<img loading=\"lazy\" alt=\"Waveform, spectrogram and modes of {name}\" src=\"{file}.png\">\n{table}</article>\n",
+        "<article data-family=\"{family}\" data-text=\"{text}\"><h2>{name}</h2>\n<p>{comment}</p>\n{details}<p class=\"note\">{family} · {tags}{keys} · 16 voices {speed:.0}× real time</p>\n<audio controls preload=\"none\" src=\"{file}.wav\"></audio>\n<img loading=\"lazy\" alt=\"Waveform, spectrogram and modes of {name}\" src=\"{file}.png\">\n{table}</article>\n",
         family = found.family_name(),
         text = escaped(&text),
         comment = escaped(playable.comment()),
+        details = details,
         tags = escaped(&tags),
         keys = escaped(&keys),
         speed = one.speed,

@@ -50,6 +50,7 @@ fn described(found: &Listed) -> Value {
         "tags": playable.tags(),
         "author": playable.author(),
         "comment": playable.comment(),
+        "details": playable.details(),
         // A sound of the user's may have the name of a factory sound.
         "programs": if found.path.is_none() { numbers(playable.name()) } else { Vec::new() },
         "file": found.path.as_ref().map(|path| path.display().to_string()),

@@ -28,7 +28,7 @@ class NativePatch:
     def modes(self) -> list[list[float]]: ...
 
 def presets() -> list[dict[str, Any]]:
-    """The factory presets and kits: name, family, tags, comment."""
+    """The factory presets and kits: name, family, tags, comment, details."""
 
 def params() -> list[dict[str, Any]]:
     """The table of parameters: id, name, unit, min, max, default, choices, help."""

@@ -109,6 +109,7 @@ pub(crate) fn presets(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         entry.set_item("family", listed.family_name())?;
         entry.set_item("tags", listed.playable.tags())?;
         entry.set_item("comment", listed.playable.comment())?;
+        entry.set_item("details", listed.playable.details())?;
         Ok(entry)
     };
     Catalogue::read(Library::of_user().as_ref()).sounds.iter().map(entry).collect()

@@ -1,5 +1,6 @@
 //! Checks that every factory preset measures like an instrument, and sounds like its name.
 
+mod hands;
 mod played;
 mod promises;
 
@@ -62,19 +63,6 @@ fn a_sound_is_at_home_within_its_keys_and_its_phrase_is_there_too() {
         for note in phrase.as_ref().expect("each has a phrase").notes() {
             let name = note_name(note.key);
             assert!((*lowest..=*highest).contains(&note.key), "{}: {name} of its phrase is outside", preset.name);
-        }
-    }
-}
-
-#[test]
-fn macros_move_something_and_at_rest_nothing() {
-    use sprung::patch::routes::Source;
-    for preset in whole_bank() {
-        for (index, name) in preset.guide.macros.iter().enumerate().filter(|(_, name)| !name.is_empty()) {
-            let source = Source::ALL[Source::Macro1 as usize + index];
-            let moves =
-                preset.patch.routes.iter().any(|(_, route)| route.source == source || route.scale == Some(source));
-            assert!(moves, "{}: nothing follows its macro ‘{name}’", preset.name);
         }
     }
 }

@@ -80,6 +80,7 @@ impl Details {
                 keys,
                 String::new(),
                 sound.playable.comment().to_owned(),
+                sound.playable.details().to_owned(),
             ];
             let bottom = rect.bottom() - 62.0;
             for text in lines {
