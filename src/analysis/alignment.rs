@@ -2,7 +2,7 @@
 
 use super::level::{SILENCE_DB, dbfs};
 use libm::{log10, sqrt};
-use realfft::RealFftPlanner;
+use sprung_fourier::Planner;
 
 /// Length in frames of the stretch of the first sound that is searched for in the second. It starts at the first
 /// audible frame. A power of two.
@@ -60,8 +60,8 @@ pub(crate) fn align(first: &[Vec<f32>], second: &[Vec<f32>]) -> Option<Alignment
 /// is divided by the square root of the energy of its passage, so that louder passages are not preferred.
 fn best_shift(first: &[Vec<f32>], second: &[Vec<f32>], start: usize) -> isize {
     let len = (STRETCH + 2 * MOST_SHIFT).next_power_of_two();
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, inverse) = (planner.plan_fft_forward(len), planner.plan_fft_inverse(len));
+    let planner = Planner::default();
+    let (forward, inverse) = (planner.forward(len), planner.inverse(len));
     let mut sums = forward.make_output_vec();
     let mut energies = vec![0.0; len + 1];
     let window = start as isize - MOST_SHIFT as isize;

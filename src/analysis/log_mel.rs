@@ -2,9 +2,9 @@
 
 use super::level::SILENCE_DB;
 use libm::{cos, log10, pow};
-use realfft::{RealFftPlanner, RealToComplex, num_complex::Complex};
+use sprung_fourier::{Complex, Forward, forward};
 use std::f64::consts::PI;
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 
 /// Sample rate in Hz of the sounds that are measured.
 pub const RATE: u32 = 44_100;
@@ -30,7 +30,7 @@ pub(crate) struct LogMel {
 
 /// A planned measurement. Not real-time safe.
 pub(crate) struct MelBands {
-    fft: Arc<dyn RealToComplex<f64>>,
+    fft: Forward,
     window: Vec<f64>,
     input: Vec<f64>,
     output: Vec<Complex<f64>>,
@@ -77,7 +77,7 @@ impl Default for MelBands {
 impl MelBands {
     /// Plans the measurement: Hann windows, triangular bands.
     pub(crate) fn new() -> Self {
-        let fft = RealFftPlanner::new().plan_fft_forward(WINDOW);
+        let fft = forward(WINDOW);
         let bin_width = f64::from(RATE) / WINDOW as f64;
         let all: Vec<[f64; BANDS]> = (0..=WINDOW / 2).map(|bin| weights(bin as f64 * bin_width)).collect();
         let filter = |band: usize| {

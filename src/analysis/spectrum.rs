@@ -2,8 +2,8 @@
 
 use super::level::{SILENCE_DB, dbfs};
 use libm::{cos, hypot, log10};
-use realfft::{RealFftPlanner, RealToComplex, num_complex::Complex};
-use std::{f64::consts::PI, sync::Arc};
+use sprung_fourier::{Complex, Forward, forward};
+use std::f64::consts::PI;
 
 /// Centres in Hz of the octaves that [`band_levels`] measures.
 pub(crate) const BAND_CENTRES: [f64; 8] = [62.5, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0];
@@ -39,7 +39,7 @@ pub(crate) struct Spectrogram {
 
 /// A planned transform with its window and buffers.
 struct Transform {
-    fft: Arc<dyn RealToComplex<f64>>,
+    fft: Forward,
     window: Vec<f64>,
     input: Vec<f64>,
     output: Vec<Complex<f64>>,
@@ -47,7 +47,7 @@ struct Transform {
 
 impl Transform {
     fn new(window: Vec<f64>, length: usize) -> Self {
-        let fft = RealFftPlanner::new().plan_fft_forward(length);
+        let fft = forward(length);
         Self { input: fft.make_input_vec(), output: fft.make_output_vec(), fft, window }
     }
 

@@ -37,7 +37,7 @@ const ALLOWED: &[Row] = &[
 const OUTSIDE: &[Row] = &[
     ("hound", &["io"]),
     ("midly", &["io"]),
-    ("rubato", &["io"]),
+    ("sprung_fourier", &["io", "analysis"]),
     ("symphonia", &["io"]),
     ("nalgebra", &["analysis"]),
     ("toml", &["preset", "analysis"]),
@@ -65,6 +65,7 @@ const ALWAYS_BUILT: &[&str] = &["libm", "midly", "same-file", "strsim", "tempfil
 const CRATES: &[&str] = &[
     "src/lib.rs",
     "src/cli/main.rs",
+    "src/fourier/src/lib.rs",
     "plugin/src/lib.rs",
     "plugin/tests/hosts/main.rs",
     "src/python/src/lib.rs",

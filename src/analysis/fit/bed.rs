@@ -10,7 +10,7 @@ use crate::analysis::line::Line;
 use crate::analysis::log_mel::{BANDS, LogMel, RATE, SPAN_DB, centre, time};
 use crate::dsp::random::{key, uniform};
 use libm::{log10, pow, sqrt};
-use realfft::RealFftPlanner;
+use sprung_fourier::forward;
 
 /// Smallest excess of the recording over the draft, in dB, that is filled up.
 const EXCESS_DB: f64 = 1.5;
@@ -168,7 +168,7 @@ impl Lines {
     /// Of samples at [`RATE`].
     pub(super) fn new(samples: &[f32]) -> Self {
         let points = (2 * samples.len()).next_power_of_two();
-        let transform = RealFftPlanner::new().plan_fft_forward(points);
+        let transform = forward(points);
         let mut input = transform.make_input_vec();
         input.iter_mut().zip(samples).for_each(|(input, sample)| *input = f64::from(*sample));
         let mut output = transform.make_output_vec();

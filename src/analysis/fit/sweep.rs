@@ -11,9 +11,8 @@ use crate::analysis::level::rms;
 use crate::analysis::log_mel::RATE;
 use crate::error::Result;
 use libm::{cos, exp, log, pow, sqrt};
-use realfft::{RealFftPlanner, RealToComplex};
+use sprung_fourier::Forward;
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 /// Seconds of the sound that the coarse and the fine search use.
 const STRETCHES: (f64, f64) = (0.45, 1.2);
@@ -43,7 +42,7 @@ struct Peaks<'a> {
     samples: &'a [f32],
     /// Seconds of the sound that are used.
     stretch: f64,
-    fft: Arc<dyn RealToComplex<f64>>,
+    fft: Forward,
     input: Vec<f64>,
     /// Reports that the search goes on; an error ends it.
     tell: &'a mut dyn FnMut() -> Result<()>,
@@ -151,7 +150,7 @@ pub(super) fn decay(samples: &[f32]) -> f64 {
 /// The possible movements of the pitch of samples at [`RATE`], from their onset on; empty if the pitch is constant.
 /// `tell` is called often, and ends the search by an error.
 pub(super) fn find(samples: &[f32], tell: &mut dyn FnMut() -> Result<()>) -> Result<Vec<Sweep>> {
-    let fft = RealFftPlanner::new().plan_fft_forward(POINTS);
+    let fft = sprung_fourier::forward(POINTS);
     let mut peaks = Peaks { samples, stretch: STRETCHES.0, input: fft.make_input_vec(), fft, tell };
     let mut coarse = Vec::new();
     for semitones in SEMITONES {

@@ -3,7 +3,7 @@
 use crate::analysis::line::Line;
 use crate::analysis::log_mel::RATE;
 use libm::{atan2, cos, log, log10, sin};
-use realfft::RealFftPlanner;
+use sprung_fourier::forward;
 use std::f64::consts::TAU;
 
 /// Samples from one moment of a course to the next.
@@ -115,7 +115,7 @@ fn against(own: &[[f64; 2]], model: Option<&[[f64; 2]]>) -> Vec<([f64; 2], f64)>
 
 /// The mean power of the sound in each bin, in dB.
 fn mean_spectrum(samples: &[f32]) -> Vec<f64> {
-    let transform = RealFftPlanner::new().plan_fft_forward(POINTS);
+    let transform = forward(POINTS);
     let (mut input, mut output) = (transform.make_input_vec(), transform.make_output_vec());
     let mut powers = vec![1e-30; output.len()];
     for start in (0..samples.len().saturating_sub(WINDOW).max(1)).step_by(WINDOW / 2) {

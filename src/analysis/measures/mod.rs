@@ -10,7 +10,7 @@ pub mod recordings;
 use super::level::peak;
 use super::log_mel::{RATE, hertz, mel};
 use libm::{cos, log, log10, sqrt};
-use realfft::RealFftPlanner;
+use sprung_fourier::forward;
 use std::f64::consts::PI;
 
 /// Least values of some measures: the 10th percentiles of the recordings.
@@ -51,7 +51,7 @@ pub fn from_onset(sound: &[f32]) -> &[f32] {
 
 /// Energy of the bins from 0 Hz to Nyquist of samples under a window, filled up with zeros to `length`.
 fn power(samples: &[f32], window: impl Fn(f64) -> f64, length: usize) -> Vec<f64> {
-    let fft = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+    let fft = forward(length);
     let (mut input, mut output) = (fft.make_input_vec(), fft.make_output_vec());
     let last = samples.len().min(length).saturating_sub(1).max(1) as f64;
     for (n, (input, sample)) in input.iter_mut().zip(samples).enumerate() {

@@ -2,7 +2,7 @@
 
 use super::super::log_mel::RATE;
 use libm::{pow, sqrt};
-use realfft::RealFftPlanner;
+use sprung_fourier::Planner;
 
 /// Centres of the octaves in Hz.
 pub(crate) const CENTRES: [f64; 9] = [63.0, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0, 16_000.0];
@@ -23,8 +23,8 @@ pub struct Octave {
 pub fn octaves(sound: &[f32]) -> [Octave; CENTRES.len()] {
     // Zeros after the sound, so that the filters do not wrap around.
     let length = (2 * sound.len()).next_power_of_two().max(1024);
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, backward) = (planner.plan_fft_forward(length), planner.plan_fft_inverse(length));
+    let planner = Planner::default();
+    let (forward, backward) = (planner.forward(length), planner.inverse(length));
     let (mut input, mut spectrum) = (forward.make_input_vec(), forward.make_output_vec());
     input.iter_mut().zip(sound).for_each(|(input, sample)| *input = (*sample).into());
     forward.process(&mut input, &mut spectrum).expect("the buffers are the transform's own");

@@ -6,8 +6,7 @@
 use super::pole::Pole;
 use crate::sound::bodies::LN_1000;
 use libm::exp;
-use realfft::RealFftPlanner;
-use std::cell::RefCell;
+use sprung_fourier::Planner;
 use std::f64::consts::PI;
 
 /// Shortest and longest T60 in seconds to which spectra are matched; each is twice the one before.
@@ -43,10 +42,10 @@ pub(super) struct Spectrum {
 }
 
 impl Spectrum {
-    fn new(samples: &[f64], decay: f64, sample_rate: f64, planner: &mut RealFftPlanner<f64>) -> Self {
+    fn new(samples: &[f64], decay: f64, sample_rate: f64, planner: &Planner) -> Self {
         let len = samples.len().min(((7.0 / decay) as usize).max(16));
         let size = (len + len / 2).next_power_of_two();
-        let transform = planner.plan_fft_forward(size);
+        let transform = planner.forward(size);
         let mut input = transform.make_input_vec();
         let mut weights = 0.0;
         for (block, (inputs, samples)) in input.chunks_mut(BLOCK).zip(samples[..len].chunks(BLOCK)).enumerate() {
@@ -98,16 +97,11 @@ fn running_median(energies: &[f64], half: usize) -> Vec<f64> {
     (0..energies.len()).map(between).collect()
 }
 
-/// Plans each transform only once.
-#[derive(Default)]
-pub(super) struct Planner(RefCell<RealFftPlanner<f64>>);
-
 /// Spectra matched to each decay.
 pub(super) struct Spectra(Vec<Spectrum>);
 
 impl Spectra {
     pub(super) fn new(samples: &[f64], sample_rate: f64, planner: &Planner) -> Self {
-        let planner = &mut planner.0.borrow_mut();
         let longest = LONGEST.min(6.0 * samples.len() as f64 / sample_rate);
         let t60s = std::iter::successors(Some(SHORTEST), |t60| Some(2.0 * t60)).take_while(|t60| *t60 < 2.0 * longest);
         let decay = |t60: f64| LN_1000 / (t60 * sample_rate);

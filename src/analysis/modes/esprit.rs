@@ -8,7 +8,7 @@
 use super::pole::{Pole, magnitude};
 use libm::{atan2, log, log2, sqrt};
 use nalgebra::{DMatrix, Schur, SymmetricEigen};
-use realfft::num_complex::Complex;
+use sprung_fourier::Complex;
 use std::f64::consts::PI;
 
 /// Number of samples after decimation, of a band and of a long band.

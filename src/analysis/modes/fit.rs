@@ -7,7 +7,7 @@
 use super::pole::{Ladder, Pole, add, correlations, magnitude};
 use crate::analysis::level;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
-use realfft::num_complex::Complex;
+use sprung_fourier::Complex;
 
 /// Largest step of a pole, in its own widths.
 const LONGEST_STEP: f64 = 0.7;

@@ -2,7 +2,7 @@
 
 use libm::{exp, log, sincos};
 use nalgebra::DMatrix;
-use realfft::num_complex::Complex;
+use sprung_fourier::Complex;
 
 /// Samples per block: within it powers come from a table, from block to block from a recurrence.
 const BLOCK: usize = 64;

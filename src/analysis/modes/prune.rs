@@ -1,10 +1,10 @@
 //! Drops modes of a fit that explain no more than noise would, the weakest first.
 
-use super::detect::{Planner, Spectra};
+use super::detect::Spectra;
 use super::fit::{Fit, Inverses, energy};
 use super::pole::magnitude;
 use nalgebra::DMatrix;
-use realfft::num_complex::Complex;
+use sprung_fourier::{Complex, Planner};
 
 /// Energy that a mode must explain, as a multiple of the average energy of noise near it. Noise alone exceeds it once
 /// in e¹⁵ bins, 3 million.

@@ -1,6 +1,6 @@
 //! Resolves bands into poles where something stands out of the residual of a fit.
 
-use super::detect::{Planner, Spectra};
+use super::detect::Spectra;
 use super::esprit::Band;
 use super::fit::Fit;
 use super::pole::{Pole, add};
@@ -8,7 +8,7 @@ use super::prune::DETECTION;
 use crate::analysis::level;
 use crate::sound::bodies::LN_1000;
 use libm::fabs;
-use realfft::num_complex::Complex;
+use sprung_fourier::{Complex, Planner};
 use std::f64::consts::PI;
 
 /// Least energy that is used in one round, relative to the strongest: the skirts of strong modes hide weak ones.

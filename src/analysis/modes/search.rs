@@ -3,13 +3,14 @@
 //! Peaks that stand out of the residual are resolved into poles. These are fitted together with all others, and kept if
 //! they explain more than noise would.
 
-use super::detect::{Planner, Spectra};
+use super::detect::Spectra;
 use super::fit::{Certainty, Fit};
 use super::plausible::{Limits, implausible};
 use super::prune::{join, prune};
 use super::resolve::{Where, resolve};
 use crate::analysis::level;
 use crate::error::{Error, Result};
+use sprung_fourier::Planner;
 
 /// Least share of the sound's energy that counts: rounding to single precision leaves as much.
 const LEAST_SHARE: f64 = 1e-13;

@@ -9,7 +9,7 @@ use super::pole::Pole;
 use super::*;
 use crate::dsp::random::{Sequence, key};
 use libm::{cos, exp, log2, pow};
-use realfft::num_complex::Complex;
+use sprung_fourier::Complex;
 
 const RATE: f64 = 48_000.0;
 /// Number of modes of a strike, and numbers of strikes in noise at every commit and in tests that take minutes.
