@@ -63,21 +63,18 @@ impl Details {
             let title = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), TITLE_HEIGHT + 2.0));
             line(ui.painter(), title, Align2::LEFT_CENTER, sound.name(), TEXT + 3.0, palette.text);
             top = title.bottom() + 4.0;
-            let keys = match &sound.playable {
+            let [keys, macros] = match &sound.playable {
                 Playable::Preset(Preset { guide, .. }) => {
-                    format!(
-                        "{} to {}, best at {}",
-                        note_name(guide.lowest),
-                        note_name(guide.highest),
-                        note_name(guide.home)
-                    )
+                    let [lowest, highest, home] = [guide.lowest, guide.highest, guide.home].map(note_name);
+                    [format!("{lowest} to {highest}, best at {home}"), guide.macros.join(", ")]
                 }
-                Playable::Kit(kit) => format!("kit of {} pads", kit.pads.len()),
+                Playable::Kit(kit) => [format!("kit of {} pads", kit.pads.len()), String::new()],
             };
             let lines = [
                 sound.playable.tags().join("  "),
                 format!("by {}", sound.playable.author()),
                 keys,
+                macros,
                 String::new(),
                 sound.playable.comment().to_owned(),
                 sound.playable.details().to_owned(),

@@ -1,5 +1,6 @@
 //! The page that a window opens with: the body large, what moves it, what it is and stands on, and the few knobs that matter.
 
+mod hands;
 mod movers;
 mod stage;
 mod things;
@@ -85,7 +86,9 @@ impl PlayPage {
             }
             message = changed.and_then(Result::err);
         }
-        stage::show_spaces(ui, inner.with_min_y(inner.bottom() - 22.0), controls);
+        let foot = inner.with_min_y(inner.bottom() - 22.0);
+        let spaces = stage::show_spaces(ui, foot, controls);
+        hands::show(ui, foot.with_min_x(spaces + GAP), &shown.patch().routes, controls);
         self.audition.request_end(ui);
         knobs(ui, rect.with_min_y(stage.bottom() + GAP), title, shown, controls);
         message

@@ -84,8 +84,8 @@ fn room(painter: &Painter, stage: Rect, [left, right]: [f32; 2], far: f32, strok
     }
 }
 
-/// Shows what the body can stand on.
-pub(super) fn show_spaces(ui: &Ui, rect: Rect, controls: &mut Controls) {
+/// Shows what the body can stand on. Returns where that ends.
+pub(super) fn show_spaces(ui: &Ui, rect: Rect, controls: &mut Controls) -> f32 {
     let palette = controls.palette;
     let title = "It stands on";
     let place =
@@ -100,6 +100,7 @@ pub(super) fn show_spaces(ui: &Ui, rect: Rect, controls: &mut Controls) {
             controls.set(Param::Space.info(), space as f32);
         }
     }
+    left
 }
 
 #[cfg(test)]
