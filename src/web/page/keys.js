@@ -9,7 +9,11 @@ const ROWS = [
 ];
 const NAMES = ["C", "C sharp", "D", "E flat", "E", "F", "F sharp", "G", "A flat", "A", "B flat", "B"];
 
-// `play(key, isOn)` is called for each key. Returns a function that shows a key.
+// Keys that a narrow screen has room for.
+const NARROW = 25;
+
+// `play(key, isOn, velocity)` is called for each key, with a velocity where the pointer gives one. Returns functions that show a
+// key, and that bring a key to the middle of a narrow screen.
 export function listen(place, play) {
   const keys = new Map();
   for (let key = LOWEST; key <= HIGHEST; key++) {
@@ -23,18 +27,32 @@ export function listen(place, play) {
   }
   pointers(place, play);
   computerKeys(place, play, keys);
-  return (key, isOn) => keys.get(key)?.classList.toggle("down", isOn);
+  return {
+    show: (key, isOn) => keys.get(key)?.classList.toggle("down", isOn),
+    centre: (middle) => {
+      // From a white C, so that octaves are seen as such.
+      const lowest = Math.max(LOWEST, Math.min(HIGHEST + 1 - NARROW, middle - (middle % 12) - 12 * (middle % 12 < 6)));
+      keys.forEach((button, key) => button.classList.toggle("far", key < lowest || key >= lowest + NARROW));
+    },
+  };
+}
+
+// The velocity of a key that is struck at a height of the page: the further down, the louder.
+function struckAt(button, y) {
+  const { top, height } = button.getBoundingClientRect();
+  return Math.max(1, Math.min(127, Math.round(30 + (110 * (y - top)) / height)));
 }
 
 // A pointer that is dragged plays the keys that it crosses.
 function pointers(place, play) {
   const held = new Map();
   const move = (event, isDown) => {
-    const under = isDown ? document.elementFromPoint(event.clientX, event.clientY)?.dataset.key : undefined;
+    const button = isDown ? document.elementFromPoint(event.clientX, event.clientY) : undefined;
+    const under = button?.dataset.key;
     const [now, before] = [under === undefined ? undefined : +under, held.get(event.pointerId)];
     if (now === before) return;
     if (before !== undefined) play(before, false);
-    if (now !== undefined) play(now, true);
+    if (now !== undefined) play(now, true, struckAt(button, event.clientY));
     if (now === undefined) held.delete(event.pointerId);
     else held.set(event.pointerId, now);
   };

@@ -46,7 +46,8 @@ function play(key, isOn, velocity = +element("velocity").value) {
   if (isOn) state.key = key;
 }
 
-const showKey = listen(element("keys"), play);
+const keys = listen(element("keys"), play);
+const showKey = keys.show;
 const show = draw(element("modes"), element("plane"), (pull) => {
   const key = state.key;
   play(key, true, Math.max(1, Math.round(127 * pull)));
@@ -57,7 +58,18 @@ function choose(preset) {
   state.preset = preset;
   state.key = preset.home;
   element("about").textContent = preset.comment;
+  element("macros").replaceChildren(...preset.macros.map(slider));
+  keys.centre(preset.home);
   if (node) send({ preset: preset.number });
+}
+
+// A macro’s slider. A preset begins with its macros at rest.
+function slider(name, macro) {
+  const label = Object.assign(document.createElement("label"), { textContent: name });
+  const input = Object.assign(document.createElement("input"), { type: "range", min: 0, max: 100, value: 0 });
+  input.oninput = () => send({ macro, value: +input.value });
+  label.append(input);
+  return label;
 }
 
 // The family’s presets; the first list is of all.
@@ -73,6 +85,7 @@ list("");
 element("preset").value = state.preset.number;
 choose(state.preset);
 element("family").onchange = ({ target }) => choose(list(target.value));
+element("wheel").oninput = ({ target }) => send({ message: [0xb0, 1, +target.value] });
 element("preset").onchange = ({ target }) => choose(presets[+target.value]);
 
 element("render").onclick = () => {

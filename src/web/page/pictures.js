@@ -58,7 +58,7 @@ function drawModes(context, { width, height }, energies, ratios) {
   const [low, high] = [Math.min(...logs) - 0.5, Math.max(...logs) + 0.5];
   const [bottom, top] = [height - 36, 16];
   context.font = "20px system-ui, sans-serif";
-  context.fillStyle = colour("--quiet");
+  context.fillStyle = colour("--muted");
   context.strokeStyle = colour("--line");
   for (let octave = Math.ceil(low); octave <= high; octave++) {
     const x = ((octave - low) / (high - low)) * width;

@@ -1,5 +1,5 @@
-// An instance of the module. A take is a list of {frame, preset} and {frame, message}: a preset’s number, or the bytes of a
-// MIDI message, in order of frames from the start. The same take gives the same samples, whatever the lengths of blocks.
+// An instance of the module. A take is a list of {frame, preset}, {frame, macro, value} and {frame, message}: a preset’s number, a
+// macro’s number with 0 to 100, or the bytes of a MIDI message, in order of frames from the start. The same take gives the same samples, whatever the lengths of blocks.
 
 const BLOCK = 1024;
 
@@ -15,20 +15,22 @@ export class Player {
     return new Float32Array(this.wasm.memory.buffer, place, length);
   }
 
-  // The presets, each with name, family, lowest, highest and home key, and comment. Not on the audio thread, which cannot
+  // The presets, each with name, family, lowest, highest and home key, macros and comment. Not on the audio thread, which cannot
   // decode text.
   presets() {
     const length = this.wasm.presets(this.synth);
     const text = new TextDecoder().decode(new Uint8Array(this.wasm.memory.buffer, this.wasm.text(this.synth), length));
     return text.trimEnd().split("\n").map((line, number) => {
-      const [name, family, lowest, highest, home, comment] = line.split("\t");
-      return { number, name, family, lowest: +lowest, highest: +highest, home: +home, comment };
+      const [name, family, lowest, highest, home, macros, comment] = line.split("\t");
+      const named = macros.split(";").filter(Boolean);
+      return { number, name, family, lowest: +lowest, highest: +highest, home: +home, macros: named, comment };
     });
   }
 
   // Plays one event of a take, at an offset into the next block.
   play(event, offset) {
     if (event.preset !== undefined) this.wasm.load(this.synth, event.preset);
+    else if (event.macro !== undefined) this.wasm.turn(this.synth, offset, event.macro, event.value);
     else this.wasm.midi(this.synth, offset, event.message[0], event.message[1] ?? 0, event.message[2] ?? 0);
   }
 

@@ -24,8 +24,8 @@ pub extern "C" fn create(sample_rate: f64, seed: u32) -> *mut Player {
     Box::into_raw(Box::new(Player::new(sample_rate, u64::from(seed))))
 }
 
-/// Writes the list of presets: for each a line with name, family, lowest, highest and home key, and comment, separated
-/// by tabs. Returns its length in bytes; [`text`] returns its address.
+/// Writes the list of presets: for each a line with name, family, lowest, highest and home key, names of macros, and
+/// comment, separated by tabs; macros by semicolons. Returns its length in bytes; [`text`] returns its address.
 ///
 /// # Safety
 /// `player` is from [`create`].
@@ -63,6 +63,16 @@ pub unsafe extern "C" fn load(player: *mut Player, preset: usize) {
 pub unsafe extern "C" fn midi(player: *mut Player, frame: u32, status: u8, first: u8, second: u8) {
     // SAFETY: as above.
     unsafe { at(player) }.midi(frame, [status, first, second]);
+}
+
+/// Turns a macro, counted from 0, to a value from 0 to 100, at a frame of the next block. Real-time safe.
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn turn(player: *mut Player, frame: u32, number: usize, value: f32) {
+    // SAFETY: as above.
+    unsafe { at(player) }.turn(frame, number, value);
 }
 
 /// Renders the next block of up to [`BLOCK`] frames. Returns whether anything sounds. Real-time safe.

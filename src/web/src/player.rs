@@ -1,6 +1,7 @@
 //! A synth with memory that JavaScript reads and writes.
 
-use sprung::engine::{Event, Snapshot, Synth, midi::parse_message};
+use sprung::engine::{Event, EventKind, Snapshot, Synth, midi::parse_message};
+use sprung::params::PARAMS;
 use sprung::preset::Preset;
 
 /// Frames that can be rendered at once.
@@ -37,7 +38,8 @@ impl Player {
             let guide = &preset.guide;
             let family = guide.family.map_or("", |family| family.name());
             let comment = preset.comment.split_whitespace().collect::<Vec<_>>().join(" ");
-            format!("{}\t{family}\t{}\t{}\t{}\t{comment}\n", preset.name, guide.lowest, guide.highest, guide.home)
+            let (name, macros) = (&preset.name, guide.macros.join(";"));
+            format!("{name}\t{family}\t{}\t{}\t{}\t{macros}\t{comment}\n", guide.lowest, guide.highest, guide.home)
         };
         self.text = Preset::factory().iter().map(line).collect();
         self.text.len()
@@ -56,9 +58,22 @@ impl Player {
 
     pub(crate) fn midi(&mut self, frame: u32, message: [u8; 3]) {
         // Program change and channel pressure have two bytes; the third is ignored.
-        let Some((channel, kind)) = parse_message(&message) else { return };
+        if let Some((channel, kind)) = parse_message(&message) {
+            self.push(Event { frame, channel, kind });
+        }
+    }
+
+    /// Turns a macro, counted from 0, to a value from 0 to 100.
+    pub(crate) fn turn(&mut self, frame: u32, number: usize, value: f32) {
+        let mut macros = PARAMS.iter().filter(|info| info.id.starts_with("macro"));
+        if let Some(info) = macros.nth(number) {
+            self.push(Event { frame, channel: 0, kind: EventKind::Param { param: info.param, value } });
+        }
+    }
+
+    fn push(&mut self, event: Event) {
         if self.events.len() < MESSAGES {
-            self.events.push(Event { frame, channel, kind });
+            self.events.push(event);
         }
     }
 
@@ -103,5 +118,20 @@ mod tests {
         let shown = player.look();
         let first = Preset::factory()[marimba].patch.modes.as_slice()[0].ratio;
         assert!(shown[0] == 1.0 && shown[1] > 1e-6 && shown[1 + SHOWN] == first, "{:?}", &shown[..3]);
+    }
+
+    #[test]
+    fn a_macro_that_is_turned_is_heard_and_one_that_does_not_exist_is_not() {
+        let played = |number| {
+            let mut player = Player::new(48_000.0, 0);
+            player.load(Preset::factory().iter().position(|preset| preset.name == "Marimba").unwrap());
+            player.turn(0, number, 100.0);
+            player.process(1024);
+            player.midi(0, [0x90, 60, 100]);
+            player.process(1024);
+            player.samples(0).to_vec()
+        };
+        assert_ne!(played(0), played(99));
+        assert_eq!(played(99), played(7), "the eighth has no name and moves nothing");
     }
 }

@@ -4,7 +4,7 @@ use super::whole_bank;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use sprung::analysis::log_mel::{RATE, distance};
 use sprung::engine::{Event, EventKind, Synth};
-use sprung::params::Param;
+use sprung::params::PARAMS;
 use sprung::patch::Patch;
 use sprung::patch::routes::Source;
 use sprung::preset::Preset;
@@ -14,17 +14,6 @@ use sprung::preset::Preset;
 const HEARD_DB: f64 = 0.25;
 
 const MODULATION_WHEEL: u8 = 1;
-
-const MACROS: [Param; 8] = [
-    Param::Macro1,
-    Param::Macro2,
-    Param::Macro3,
-    Param::Macro4,
-    Param::Macro5,
-    Param::Macro6,
-    Param::Macro7,
-    Param::Macro8,
-];
 
 /// A note on the preset's home key after an event.
 fn played(preset: &Preset, patch: Patch, before: Option<EventKind>) -> Vec<f32> {
@@ -47,8 +36,9 @@ fn idle(preset: &Preset) -> Vec<String> {
             idle.push(format!("{}: {what} changes {change:.2} dB", preset.name));
         }
     };
-    for (name, param) in preset.guide.macros.iter().zip(MACROS).filter(|(name, _)| !name.is_empty()) {
-        listen(name, &played(preset, preset.patch.clone().with(param, 100.0), None));
+    let macros = PARAMS.iter().filter(|info| info.id.starts_with("macro"));
+    for (name, info) in preset.guide.macros.iter().zip(macros) {
+        listen(name, &played(preset, preset.patch.clone().with(info.param, 100.0), None));
     }
     let wheel = EventKind::Control { controller: MODULATION_WHEEL, value: 1.0 };
     listen("the wheel", &played(preset, preset.patch.clone(), Some(wheel)));

@@ -155,6 +155,9 @@ fn sounds(page: &mut Page) -> Result<(), String> {
     heard(page, "a mass that is pulled")?;
     until(page, "sprung.state.take.filter((event) => event.message).length === 6")?;
     midi::plays(page, heard)?;
+    page.value("(input => { input.value = 70; input.dispatchEvent(new Event('input')); })(document.querySelector('#macros input'))");
+    until(page, "sprung.state.take.at(-1)?.macro === 0 && sprung.state.take.at(-1)?.value === 70")?;
+    println!("a macro is turned");
     let peak = page.value(
         "import('./wav.js').then(({renderTake}) => Math.max(...renderTake(sprung.module, sprung.state.take, 48000, 2)[0].map((block) => Math.max(...block))))",
     );
