@@ -208,8 +208,10 @@ fn is_measured(found: &Value) -> bool {
 fn take_picture(page: &mut Page, path: &Path) -> Result<(), String> {
     page.call(
         "Emulation.setDeviceMetricsOverride",
-        json!({ "width": 1160, "height": 790, "deviceScaleFactor": 1, "mobile": false }),
+        json!({ "width": 1160, "height": 920, "deviceScaleFactor": 1, "mobile": false }),
     );
+    let dark = json!({ "features": [{ "name": "prefers-color-scheme", "value": "dark" }] });
+    page.call("Emulation.setEmulatedMedia", dark);
     page.click("[data-key='48']");
     page.value("[48, 55, 60].forEach((key) => sprung.play(key, true))");
     page.value("scrollTo(0, 0)");
