@@ -45,14 +45,14 @@ pub(crate) const fn layout(
     }
 }
 
-/// The first page of a hardware controller, in the order of its eight knobs. The macros come first, because nearly every
-/// factory sound has three, for what one would turn in it first; the others act in sounds without macros too.
+/// The first page of a hardware controller, in the order of its eight knobs. The macros come first, because every factory
+/// sound has four, for what one would turn in it first; the others act in sounds without macros too.
 const FIRST: [Param; 8] = [
     Param::Macro1,
     Param::Macro2,
     Param::Macro3,
+    Param::Macro4,
     Param::Decay,
-    Param::Release,
     Param::Tilt,
     Param::SpaceMix,
     Param::Gain,

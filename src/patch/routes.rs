@@ -192,6 +192,14 @@ pub fn amount_param(place: usize) -> Param {
     PARAMS[Param::Route1 as usize + place.min(MAX_ROUTES - 1)].param
 }
 
+/// Number of macros.
+pub(crate) const MAX_MACROS: usize = 8;
+
+/// The parameter that is the macro of a number, counted from 0; none beyond the eighth. Real-time safe.
+pub fn macro_param(number: usize) -> Option<Param> {
+    (number < MAX_MACROS).then(|| PARAMS[Param::Macro1 as usize + number].param)
+}
+
 /// The place of the route whose amount this parameter is; none if the parameter is not the amount of a route.
 pub fn place_of_amount(param: Param) -> Option<usize> {
     (param as usize).checked_sub(Param::Route1 as usize).filter(|place| *place < MAX_ROUTES)
@@ -224,6 +232,7 @@ mod tests {
             assert_eq!(place_of_amount(amount_param(place)), Some(place));
         }
         assert_eq!(place_of_amount(Param::Macro8), None);
+        assert_eq!([0, 7, 8].map(macro_param), [Some(Param::Macro1), Some(Param::Macro8), None]);
         assert_eq!(place_of_amount(Param::Voices), None);
     }
 

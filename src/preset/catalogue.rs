@@ -29,7 +29,7 @@ pub struct Catalogue {
 
 impl Listed {
     fn new(playable: Playable, path: Option<PathBuf>) -> Self {
-        let words = [playable.name(), playable.comment(), &playable.tags().join(" ")].join(" ");
+        let words = [playable.name(), playable.comment(), playable.details(), &playable.tags().join(" ")].join(" ");
         let mut listed = Self { playable, path, text: words.to_lowercase() };
         listed.text = format!("{} {}", listed.text, listed.family_name().replace('_', " "));
         listed

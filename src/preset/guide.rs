@@ -5,12 +5,10 @@ use super::complaints::Complaints;
 use super::phrase::Phrase;
 use super::value::{check_keys, unexpected};
 use crate::error::nearest;
+use crate::patch::routes::MAX_MACROS;
 use crate::units::{key_from_note_name, note_name};
 use std::fmt::{self, Write};
 use toml::{Table, Value};
-
-/// Number of macros.
-const MACROS: usize = 8;
 
 macro_rules! families {
     ($($family:ident $name:literal),* $(,)?) => {
@@ -91,7 +89,7 @@ impl Guide {
         }
         match table.get("macros") {
             None => {}
-            Some(Value::Array(names)) if names.len() <= MACROS => {
+            Some(Value::Array(names)) if names.len() <= MAX_MACROS => {
                 let name = |(index, name): (usize, &Value)| match name {
                     Value::String(name) => check_label(&format!("macros[{index}]"), name.clone()),
                     other => Err(unexpected(&format!("macros[{index}]"), "a name", other)),

@@ -215,7 +215,8 @@ fn article(one: &Auditioned) -> String {
     let (found, playable) = (&one.found, &one.found.playable);
     let (name, file) = (escaped(found.name()), &one.file);
     let tags = playable.tags().join(", ");
-    let text = [found.name(), playable.comment(), &tags, found.family_name()].join(" ").to_lowercase();
+    let text =
+        [found.name(), playable.comment(), playable.details(), &tags, found.family_name()].join(" ").to_lowercase();
     let keys = match playable {
         Playable::Preset(preset) => {
             let [lowest, highest, home] = [preset.guide.lowest, preset.guide.highest, preset.guide.home].map(note_name);
@@ -244,7 +245,6 @@ fn article(one: &Auditioned) -> String {
         family = found.family_name(),
         text = escaped(&text),
         comment = escaped(playable.comment()),
-        details = details,
         tags = escaped(&tags),
         keys = escaped(&keys),
         speed = one.speed,

@@ -42,7 +42,8 @@ pub fn forward(length: usize) -> Forward {
     Planner::default().forward(length)
 }
 
-/// Channels converted from one sample rate in Hz to another, band-limited to the lower of both.
+/// Channels converted from one sample rate in Hz to another, band-limited to the lower of both. Double precision as in all
+/// transforms here, so that a program contains only one kind.
 ///
 /// # Errors
 /// What cannot be converted, in words.

@@ -9,6 +9,8 @@ const ROWS = [
 ];
 const NAMES = ["C", "C sharp", "D", "E flat", "E", "F", "F sharp", "G", "A flat", "A", "B flat", "B"];
 
+// Velocities of a key that is struck at its top and at its bottom: both can be struck without aiming at an edge.
+const [SOFTEST, LOUDEST] = [30, 127];
 // Keys that a narrow screen has room for.
 const NARROW = 25;
 
@@ -20,7 +22,7 @@ export function listen(place, play) {
     const button = document.createElement("button");
     button.className = NAMES[key % 12].length > 1 ? "key black" : "key";
     button.ariaLabel = `${NAMES[key % 12]} ${Math.floor(key / 12) - 1}`;
-    button.tabIndex = key === 60 ? 0 : -1;
+    button.tabIndex = -1;
     button.dataset.key = key;
     place.append(button);
     keys.set(key, button);
@@ -32,7 +34,11 @@ export function listen(place, play) {
     centre: (middle) => {
       // From a white C, so that octaves are seen as such.
       const lowest = Math.max(LOWEST, Math.min(HIGHEST + 1 - NARROW, middle - (middle % 12) - 12 * (middle % 12 < 6)));
-      keys.forEach((button, key) => button.classList.toggle("far", key < lowest || key >= lowest + NARROW));
+      keys.forEach((button, key) => {
+        button.classList.toggle("far", key < lowest || key >= lowest + NARROW);
+        // Tab leads to one key, from where arrows lead on.
+        button.tabIndex = key === Math.max(lowest, Math.min(lowest + NARROW - 1, middle)) ? 0 : -1;
+      });
     },
   };
 }
@@ -40,7 +46,8 @@ export function listen(place, play) {
 // The velocity of a key that is struck at a height of the page: the further down, the louder.
 function struckAt(button, y) {
   const { top, height } = button.getBoundingClientRect();
-  return Math.max(1, Math.min(127, Math.round(30 + (110 * (y - top)) / height)));
+  const share = Math.max(0, Math.min(1, (y - top) / height));
+  return Math.round(SOFTEST + (LOUDEST - SOFTEST) * share);
 }
 
 // A pointer that is dragged plays the keys that it crosses.

@@ -1,5 +1,5 @@
 // The page: loads the module, starts the audio worklet with the first note, and keeps what is played.
-import { Player } from "./player.js";
+import { Player, startsNote } from "./player.js";
 import { listen, useMidi } from "./keys.js";
 import { draw } from "./pictures.js";
 import { renderTake, wav } from "./wav.js";
@@ -24,7 +24,7 @@ async function start() {
     if (data.masses) show(data.masses);
     if (data.played) {
       state.take.push(data.played);
-      element("render").disabled = element("forget").disabled = !state.take.some((event) => event.message);
+      element("render").disabled = element("forget").disabled = !state.take.some(startsNote);
     }
   };
   made.port.postMessage({ preset: state.preset.number });
@@ -58,13 +58,14 @@ function choose(preset) {
   state.preset = preset;
   state.key = preset.home;
   element("about").textContent = preset.comment;
-  element("macros").replaceChildren(...preset.macros.map(slider));
+  element("macros").replaceChildren(...preset.macros.map(slider).filter(Boolean));
   keys.centre(preset.home);
   if (node) send({ preset: preset.number });
 }
 
-// A macro’s slider. A preset begins with its macros at rest.
+// A macro’s slider, if it has a name. A preset begins with its macros at rest.
 function slider(name, macro) {
+  if (!name) return undefined;
   const label = Object.assign(document.createElement("label"), { textContent: name });
   const input = Object.assign(document.createElement("input"), { type: "range", min: 0, max: 100, value: 0 });
   input.oninput = () => send({ macro, value: +input.value });
@@ -102,11 +103,20 @@ element("forget").onclick = async () => {
   node = undefined;
   state.take = [];
   element("render").disabled = element("forget").disabled = true;
+  element("wheel").value = 0;
+  choose(state.preset);
   await old?.context.close();
 };
 
+// A message of a keyboard; the page’s wheel follows the keyboard’s.
+function hear(message) {
+  const [status, controller, value] = message;
+  if ((status & 0xf0) === 0xb0 && controller === 1) element("wheel").value = value;
+  send({ message });
+}
+
 element("midi").onclick = () =>
-  useMidi((message) => send({ message })).then(
+  useMidi(hear).then(
     (names) => (element("status").textContent = names.length ? `MIDI: ${names.join(", ")}` : "No MIDI port yet."),
     (error) => (element("status").textContent = `No MIDI: ${error.message}`),
   );

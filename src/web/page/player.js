@@ -1,7 +1,10 @@
-// An instance of the module. A take is a list of {frame, preset}, {frame, macro, value} and {frame, message}: a preset’s number, a
-// macro’s number with 0 to 100, or the bytes of a MIDI message, in order of frames from the start. The same take gives the same samples, whatever the lengths of blocks.
+// An instance of the module. A take is a list of {frame, preset}, {frame, macro, value} and {frame, message}: a preset’s
+// number, a macro’s number with 0 to 100, or the bytes of a MIDI message, in order of frames from the start. The same take gives the same samples, whatever the lengths of blocks.
 
 const BLOCK = 1024;
+
+// Whether an event of a take starts a note.
+export const startsNote = ({ message }) => message && (message[0] & 0xf0) === 0x90 && message[2] > 0;
 
 export class Player {
   constructor(module, sampleRate, seed = 0) {
@@ -22,8 +25,8 @@ export class Player {
     const text = new TextDecoder().decode(new Uint8Array(this.wasm.memory.buffer, this.wasm.text(this.synth), length));
     return text.trimEnd().split("\n").map((line, number) => {
       const [name, family, lowest, highest, home, macros, comment] = line.split("\t");
-      const named = macros.split(";").filter(Boolean);
-      return { number, name, family, lowest: +lowest, highest: +highest, home: +home, macros: named, comment };
+      const keys = { lowest: +lowest, highest: +highest, home: +home };
+      return { number, name, family, ...keys, macros: macros.split(";"), comment };
     });
   }
 
@@ -39,14 +42,11 @@ export class Player {
   render(take, next, left, right) {
     for (let start = 0; start < left.length; ) {
       let frames = Math.min(BLOCK, left.length - start);
+      // A preset is set between blocks, with all events of its frame.
+      const cut = take.find((event, n) => n >= next && event.preset !== undefined && event.frame > this.frame);
+      if (cut) frames = Math.min(frames, cut.frame - this.frame);
       for (; next < take.length && take[next].frame < this.frame + frames; next++) {
-        const offset = take[next].frame - this.frame;
-        // A preset is set between blocks.
-        if (take[next].preset !== undefined && offset > 0) {
-          frames = offset;
-          break;
-        }
-        this.play(take[next], offset);
+        this.play(take[next], take[next].frame - this.frame);
       }
       this.sounds = this.wasm.process(this.synth, frames) !== 0;
       left.set(this.floats(this.wasm.samples(this.synth, 0), frames), start);

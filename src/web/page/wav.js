@@ -1,10 +1,10 @@
 // Takes as WAV files of 32-bit floats, which hold every bit.
-import { Player } from "./player.js";
+import { Player, startsNote } from "./player.js";
 
 // The samples of a take, from the frame of its first note until it has died away, or `longest` seconds later.
 export function renderTake(module, take, sampleRate, longest = 60) {
   const player = new Player(module, sampleRate);
-  const first = take.find((event) => event.message)?.frame ?? 0;
+  const first = take.find(startsNote)?.frame ?? 0;
   const last = take.at(-1)?.frame ?? 0;
   const [left, right] = [[], []];
   let next = 0;

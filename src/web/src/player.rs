@@ -1,7 +1,7 @@
 //! A synth with memory that JavaScript reads and writes.
 
 use sprung::engine::{Event, EventKind, Snapshot, Synth, midi::parse_message};
-use sprung::params::PARAMS;
+use sprung::patch::routes::macro_param;
 use sprung::preset::Preset;
 
 /// Frames that can be rendered at once.
@@ -65,9 +65,8 @@ impl Player {
 
     /// Turns a macro, counted from 0, to a value from 0 to 100.
     pub(crate) fn turn(&mut self, frame: u32, number: usize, value: f32) {
-        let mut macros = PARAMS.iter().filter(|info| info.id.starts_with("macro"));
-        if let Some(info) = macros.nth(number) {
-            self.push(Event { frame, channel: 0, kind: EventKind::Param { param: info.param, value } });
+        if let Some(param) = macro_param(number) {
+            self.push(Event { frame, channel: 0, kind: EventKind::Param { param, value } });
         }
     }
 

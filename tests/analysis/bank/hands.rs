@@ -4,9 +4,8 @@ use super::whole_bank;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use sprung::analysis::log_mel::{RATE, distance};
 use sprung::engine::{Event, EventKind, Synth};
-use sprung::params::PARAMS;
 use sprung::patch::Patch;
-use sprung::patch::routes::Source;
+use sprung::patch::routes::{Source, macro_param};
 use sprung::preset::Preset;
 
 /// Least change in dB, on average over all bands of a note of a second and its release. A scoop of a tenth of a second into
@@ -36,9 +35,8 @@ fn idle(preset: &Preset) -> Vec<String> {
             idle.push(format!("{}: {what} changes {change:.2} dB", preset.name));
         }
     };
-    let macros = PARAMS.iter().filter(|info| info.id.starts_with("macro"));
-    for (name, info) in preset.guide.macros.iter().zip(macros) {
-        listen(name, &played(preset, preset.patch.clone().with(info.param, 100.0), None));
+    for (name, param) in preset.guide.macros.iter().zip((0..).map_while(macro_param)) {
+        listen(name, &played(preset, preset.patch.clone().with(param, 100.0), None));
     }
     let wheel = EventKind::Control { controller: MODULATION_WHEEL, value: 1.0 };
     listen("the wheel", &played(preset, preset.patch.clone(), Some(wheel)));
@@ -69,5 +67,20 @@ fn every_preset_has_four_macros_of_different_names_and_follows_the_wheel() {
         names.dedup();
         assert!(names.len() >= 4 && names.len() == guide.macros.len(), "{name}: {:?}", guide.macros);
         assert!(patch.routes.iter().any(|(_, route)| route.source == Source::Wheel), "{name}");
+        // No two macros do the same, or undo each other.
+        let mut moved: Vec<Vec<_>> = (0..guide.macros.len())
+            .map(|number| {
+                let source = Source::ALL[Source::Macro1 as usize + number];
+                let follows =
+                    patch.routes.iter().filter(|(_, route)| [Some(route.source), route.scale].contains(&Some(source)));
+                follows
+                    .map(|(_, route)| (route.scale.map(|_| route.source as usize), route.destination as usize))
+                    .collect()
+            })
+            .collect();
+        assert!(moved.iter().all(|moved| !moved.is_empty()), "{name}: a macro moves nothing: {moved:?}");
+        moved.sort();
+        moved.dedup();
+        assert_eq!(moved.len(), guide.macros.len(), "{name}: two macros move the same");
     }
 }

@@ -236,7 +236,7 @@ fn made_by(tool: &str, folder: &Path, ending: &str) -> Result<Made, String> {
 /// Packs the crate as for crates.io and builds it from the package, without publishing anything.
 fn package_for_crates_io() -> Result<(), String> {
     run_to_end(
-        &mut cargo("publish --dry-run --allow-dirty --package sprung --package sprung-cli"),
+        &mut cargo("publish --dry-run --allow-dirty --package sprung-fourier --package sprung --package sprung-cli"),
         "cargo publish --dry-run",
     )?;
     // docs.rs builds with these features, as the metadata in Cargo.toml say.

@@ -66,7 +66,7 @@ impl Details {
             let [keys, macros] = match &sound.playable {
                 Playable::Preset(Preset { guide, .. }) => {
                     let [lowest, highest, home] = [guide.lowest, guide.highest, guide.home].map(note_name);
-                    [format!("{lowest} to {highest}, best at {home}"), guide.macros.join(", ")]
+                    [format!("{lowest} to {highest}, best at {home}"), format!("macros: {}", guide.macros.join(", "))]
                 }
                 Playable::Kit(kit) => [format!("kit of {} pads", kit.pads.len()), String::new()],
             };

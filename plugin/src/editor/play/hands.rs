@@ -4,7 +4,7 @@ use crate::editor::controls::Controls;
 use crate::editor::theme::SMALL;
 use crate::editor::widgets::text::{line, width};
 use egui::{Align2, Rect, Ui};
-use sprung::patch::routes::{Routes, Source, amount_param};
+use sprung::patch::routes::{Route, Routes, Source, amount_param};
 
 /// The controllers that hands and mouth have beside the keys, by the names that players have for them.
 const CONTROLLERS: [(Source, &str); 4] =
@@ -24,10 +24,11 @@ pub(super) fn show(ui: &Ui, rect: Rect, routes: &Routes, controls: &Controls) {
     line(ui.painter(), rect, Align2::RIGHT_CENTER, &shown, SMALL, controls.palette.muted);
 }
 
-/// Such as `Pressure: vibrato, bow force`; none if no route whose amount is not 0 has the source.
+/// Such as `Pressure: bow force, vibrato`; none if no route whose amount is not 0 has the source.
 fn sentence(routes: &Routes, source: Source, name: &str, is_on: impl Fn(usize) -> bool) -> Option<String> {
     let mut moved: Vec<&str> = Vec::new();
-    for (_, route) in routes.iter().filter(|(place, route)| route.source == source && is_on(*place)) {
+    let follows = |route: &Route| route.source == source || route.scale == Some(source);
+    for (_, route) in routes.iter().filter(|(place, route)| follows(route) && is_on(*place)) {
         let destination = route.destination.info().name;
         if !moved.contains(&destination) {
             moved.push(destination);
@@ -38,7 +39,9 @@ fn sentence(routes: &Routes, source: Source, name: &str, is_on: impl Fn(usize) -
 
 #[cfg(test)]
 mod tests {
-    use super::{Source, sentence};
+    use super::{Route, Source, sentence};
+    use sprung::params::Param;
+    use sprung::patch::routes::Routes;
     use sprung::preset::Preset;
 
     #[test]
@@ -49,5 +52,8 @@ mod tests {
         assert_eq!(said(Source::Wheel).as_deref(), Some("Hand: vibrato"));
         assert_eq!(said(Source::Breath), None);
         assert_eq!(sentence(routes, Source::Wheel, "Hand", |_| false), None);
+        let mut scaled = Routes::NONE;
+        scaled.set(3, Some(Route { scale: Some(Source::Wheel), ..Route::linear(Source::Lfo1, Param::Fine) }));
+        assert_eq!(sentence(&scaled, Source::Wheel, "Hand", |_| true).as_deref(), Some("Hand: fine tune"));
     }
 }

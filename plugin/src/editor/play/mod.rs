@@ -88,7 +88,9 @@ impl PlayPage {
         }
         let foot = inner.with_min_y(inner.bottom() - 22.0);
         let spaces = stage::show_spaces(ui, foot, controls);
-        hands::show(ui, foot.with_min_x(spaces + GAP), &shown.patch().routes, controls);
+        if shown.preset().is_some() {
+            hands::show(ui, foot.with_min_x(spaces + GAP), &shown.patch().routes, controls);
+        }
         self.audition.request_end(ui);
         knobs(ui, rect.with_min_y(stage.bottom() + GAP), title, shown, controls);
         message

@@ -83,6 +83,19 @@ const SPEED: &str = "(async (preset) => {
   return {times, ...played, silent: silent.lost};
 })";
 
+/// JavaScript: turns the first macro.
+const TURN: &str = "(input => { input.value = 70; input.dispatchEvent(new Event('input')); })
+  (document.querySelector('#macros input'))";
+
+/// JavaScript: whether a note sounds otherwise after a macro was turned.
+const IS_MACRO_HEARD: &str = "import('./wav.js').then(({renderTake}) => {
+  const preset = sprung.state.preset.number;
+  const note = [{frame: 9600, message: [0x90, 60, 100]}];
+  const [plain, turned] = [[], [{frame: 0, macro: 0, value: 100}]].map((events) =>
+    renderTake(sprung.module, [{frame: 0, preset}, ...events, ...note], 48000, 1)[0]);
+  return plain.some((block, n) => block.some((sample, k) => sample !== turned[n][k]));
+})";
+
 /// Opens the page, and checks it or takes its picture.
 pub(super) fn run(address: &str, check: bool, picture: Option<&Path>) -> Result<(), String> {
     let Some(program) = installed() else {
@@ -155,9 +168,12 @@ fn sounds(page: &mut Page) -> Result<(), String> {
     heard(page, "a mass that is pulled")?;
     until(page, "sprung.state.take.filter((event) => event.message).length === 6")?;
     midi::plays(page, heard)?;
-    page.value("(input => { input.value = 70; input.dispatchEvent(new Event('input')); })(document.querySelector('#macros input'))");
+    page.value(TURN);
     until(page, "sprung.state.take.at(-1)?.macro === 0 && sprung.state.take.at(-1)?.value === 70")?;
-    println!("a macro is turned");
+    if page.value(IS_MACRO_HEARD) != json!(true) {
+        return Err("a macro that is turned is not heard".to_owned());
+    }
+    println!("a macro is heard");
     let peak = page.value(
         "import('./wav.js').then(({renderTake}) => Math.max(...renderTake(sprung.module, sprung.state.take, 48000, 2)[0].map((block) => Math.max(...block))))",
     );
