@@ -202,7 +202,7 @@ fn pages_of(instance: &mut Instance, own_pages: u32) {
         }
         if index == own_pages {
             let ids: Vec<_> = page.param_ids.iter().flatten().filter_map(id).collect();
-            assert_eq!(ids, ["macro1", "macro2", "macro3", "decay", "release", "tilt", "space_mix", "gain"]);
+            assert_eq!(ids, ["macro1", "macro2", "macro3", "macro4", "decay", "tilt", "space_mix", "gain"]);
             continue;
         }
         assert!(index > own_pages + 1 || page.page_name == b"Macros");
