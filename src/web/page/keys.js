@@ -34,10 +34,12 @@ export function listen(place, play) {
     centre: (middle) => {
       // From a white C, so that octaves are seen as such.
       const lowest = Math.max(LOWEST, Math.min(HIGHEST + 1 - NARROW, middle - (middle % 12) - 12 * (middle % 12 < 6)));
+      const highest = lowest + NARROW - 1;
+      // Tab leads to one key, from where arrows lead on.
+      const entry = Math.max(lowest, Math.min(highest, middle));
       keys.forEach((button, key) => {
-        button.classList.toggle("far", key < lowest || key >= lowest + NARROW);
-        // Tab leads to one key, from where arrows lead on.
-        button.tabIndex = key === Math.max(lowest, Math.min(lowest + NARROW - 1, middle)) ? 0 : -1;
+        button.classList.toggle("far", key < lowest || key > highest);
+        button.tabIndex = key === entry ? 0 : -1;
       });
     },
   };

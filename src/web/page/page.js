@@ -42,12 +42,11 @@ function send(event) {
 function play(key, isOn, velocity = +element("velocity").value) {
   // A velocity of 0 releases the key at medium speed.
   send({ message: [0x90, key, isOn ? velocity : 0] });
-  showKey(key, isOn);
+  keys.show(key, isOn);
   if (isOn) state.key = key;
 }
 
 const keys = listen(element("keys"), play);
-const showKey = keys.show;
 const show = draw(element("modes"), element("plane"), (pull) => {
   const key = state.key;
   play(key, true, Math.max(1, Math.round(127 * pull)));

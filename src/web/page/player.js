@@ -1,5 +1,6 @@
 // An instance of the module. A take is a list of {frame, preset}, {frame, macro, value} and {frame, message}: a preset’s
-// number, a macro’s number with 0 to 100, or the bytes of a MIDI message, in order of frames from the start. The same take gives the same samples, whatever the lengths of blocks.
+// number, a macro’s number with 0 to 100, or the bytes of a MIDI message, in order of frames from the start. The same take
+// gives the same samples, whatever the lengths of blocks.
 
 const BLOCK = 1024;
 
@@ -42,9 +43,10 @@ export class Player {
   render(take, next, left, right) {
     for (let start = 0; start < left.length; ) {
       let frames = Math.min(BLOCK, left.length - start);
-      // A preset is set between blocks, with all events of its frame.
-      const cut = take.find((event, n) => n >= next && event.preset !== undefined && event.frame > this.frame);
-      if (cut) frames = Math.min(frames, cut.frame - this.frame);
+      // A preset is set between blocks, with all events of its frame: a block ends before the first that is in it.
+      for (let n = next; n < take.length && take[n].frame < this.frame + frames; n++) {
+        if (take[n].preset !== undefined && take[n].frame > this.frame) frames = take[n].frame - this.frame;
+      }
       for (; next < take.length && take[next].frame < this.frame + frames; next++) {
         this.play(take[next], take[next].frame - this.frame);
       }

@@ -54,7 +54,7 @@ fn macros_and_wheel_of_every_eighth_preset_are_heard() {
 }
 
 #[test]
-#[ignore = "takes a minute"]
+#[ignore = "takes half a minute"]
 fn macros_and_wheel_of_every_preset_are_heard() {
     are_heard(whole_bank());
 }
