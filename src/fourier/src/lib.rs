@@ -22,8 +22,15 @@ pub type Inverse = Arc<dyn ComplexToReal<f64>>;
 const CHUNK: usize = 4096;
 
 /// Plans transforms, each length only once.
-#[derive(Default)]
 pub struct Planner(RefCell<RealFftPlanner<f64>>);
+
+impl Default for Planner {
+    // Derived, it would be inlined, and with it all planners into each crate that calls it.
+    #[inline(never)]
+    fn default() -> Self {
+        Self(RefCell::new(RealFftPlanner::new()))
+    }
+}
 
 impl Planner {
     /// The transform of `length` samples.
