@@ -33,6 +33,7 @@ mod displays;
 mod drops;
 pub(crate) mod host;
 mod keyboard;
+mod lamps;
 mod manual;
 mod modes;
 mod pages;

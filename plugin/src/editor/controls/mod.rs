@@ -14,6 +14,7 @@ use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
 use sprung::engine::SoundingNote;
 use sprung::params::{PARAMS, ParamInfo};
+use std::collections::HashMap;
 use std::time::Duration;
 
 /// Time between two repaints while something moves.
@@ -56,6 +57,8 @@ pub(super) struct Interaction {
     /// The parameter that waits for a source of a route.
     pub(super) learning: Option<Learning>,
     pub(super) binding: Option<Binding>,
+    /// The values of parts that have been switched off, by sound and section.
+    pub(super) switched_off: HashMap<(String, &'static str), f32>,
 }
 
 /// The text of the status line about the thing under the pointer.

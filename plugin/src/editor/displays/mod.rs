@@ -30,7 +30,7 @@ enum Picture {
 /// The pictures with their names and the widths of their tabs.
 const PICTURES: [(Picture, &str, f32); 4] = [
     (Picture::Phase, "Phase", 44.0),
-    (Picture::Body, "Body", 40.0),
+    (Picture::Body, "Shape", 46.0),
     (Picture::Scope, "Scope", 44.0),
     (Picture::Ringing, "Ringing", 52.0),
 ];

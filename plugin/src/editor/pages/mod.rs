@@ -1,9 +1,10 @@
-//! The row of tabs and the page below it: sections of parameters, the body, the kit's keys, the tuning, the devices.
+//! The way of the sound and the page of its selected part: sections of parameters, the body, the kit's keys, the tuning, the devices.
 
 mod curves;
 mod devices;
 mod kit;
 mod outlines;
+pub(super) mod path;
 mod sections;
 pub(super) mod tuning;
 mod voices;
@@ -12,22 +13,21 @@ use crate::editor::body::page::BodyPage;
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::keyboard::grid::KeyGrid;
+use crate::editor::routes;
+use crate::editor::theme::GAP;
 use crate::editor::theme::layout::Layout;
-use crate::editor::theme::{GAP, TEXT};
 use crate::editor::widgets::buttons::tab;
-use crate::editor::widgets::text;
 use crate::link::Link;
 use egui::{Rect, Ui, pos2, vec2};
 use nice_plug_core::context::PluginApi;
+use path::Part;
 use tuning::TuningPage;
 
-/// The pages after those with sections.
-const OTHERS: [&str; 3] = ["Model", "Kit", "Tuning"];
-/// The page after these; only the standalone program has it.
-const DEVICES: &str = "Devices";
 /// The manual's page for each page, in their order.
 const TOPICS: [&str; 10] =
     ["exciters", "bodies", "modulation", "modulation", "space", "tuning", "bodies", "kits", "tuning", "window"];
+/// Side of the button of the manual.
+const HELP: f32 = 22.0;
 /// Smallest width at which the voices fit beside the page's sections.
 const WIDE: f32 = 840.0;
 /// The width of the sections beside the voices.
@@ -41,23 +41,26 @@ pub(super) enum Request {
 }
 
 /// The state of the pages.
-#[derive(Default)]
 pub(super) struct Pages {
-    page: usize,
+    /// The selected part of the sound's way, and whether it was selected in this pass.
+    part: Part,
+    is_new: bool,
     body: BodyPage,
     kit: KeyGrid,
     tuning: TuningPage,
 }
 
-/// The names of all pages.
-pub(super) fn names() -> impl Iterator<Item = &'static str> {
-    sections::pages().chain(OTHERS)
+impl Default for Pages {
+    fn default() -> Self {
+        let (body, kit, tuning) = (BodyPage::default(), KeyGrid::default(), TuningPage::default());
+        Self { part: ("Mallet", 0), is_new: false, body, kit, tuning }
+    }
 }
 
 impl Pages {
     /// The page of the manual that explains the present page.
     pub(super) fn topic(&self) -> &'static str {
-        TOPICS.get(self.page).copied().unwrap_or("window")
+        TOPICS[self.part.1]
     }
 
     /// Ends the user's action, and releases the held keys.
@@ -73,7 +76,7 @@ impl Pages {
         self.tuning.grid.release(link);
     }
 
-    /// Shows tabs and page; `down` has one bit for each held key, `voices` is the number of sounding voices.
+    /// Shows the way of the sound and a page; `down` has one bit for each held key, `voices` is the number of sounding voices.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
@@ -82,52 +85,49 @@ impl Pages {
         (down, voices): (u128, u32),
         controls: &mut Controls,
     ) -> Option<Request> {
-        let request = self.tabs(ui, layout.tabs, controls);
-        let (rect, page) = (layout.sections, self.page);
-        let rest = page.checked_sub(sections::pages().count());
-        match rest {
-            None => {
-                let is_voices = sections::pages().nth(page) == Some("Voices");
+        let request = self.path(ui, layout.path, controls);
+        let (rect, (part, page)) = (layout.sections, self.part);
+        match part {
+            "Routes" => {
+                routes::list::show(ui, rect, shown.patch(), shown.guide(), shown.preset().is_some(), controls);
+                request
+            }
+            "Model" => self.body.show(ui, rect, shown, controls).map(Request::Say).or(request),
+            "Kit" => {
+                kit::show(ui, rect, &mut self.kit, shown, down, controls);
+                request
+            }
+            "Devices" => {
+                devices::show(ui, rect, controls);
+                request
+            }
+            "Tuning" => self.tuning.show(ui, rect, shown, down, controls).map(Request::Say).or(request),
+            _ => {
+                let is_voices = part == "Voices";
                 let (left, right) = if is_voices && rect.width() >= WIDE {
                     let left = rect.left() + SECTIONS;
                     (rect.with_max_x(left), Some(rect.with_min_x(left + GAP)))
                 } else {
                     (rect, None)
                 };
-                let about = (shown.patch(), shown.guide(), shown.preset().is_some());
-                sections::show(ui, left, page, about, controls);
+                let about = (shown.patch(), shown.guide());
+                sections::show(ui, left, page, (part, std::mem::take(&mut self.is_new)), about, controls);
                 if let Some(right) = right {
                     voices::show(ui.painter(), right, voices, controls);
                 }
                 request
             }
-            Some(0) => self.body.show(ui, rect, shown, controls).map(Request::Say).or(request),
-            Some(1) => {
-                kit::show(ui, rect, &mut self.kit, shown, down, controls);
-                request
-            }
-            Some(3) => {
-                devices::show(ui, rect, controls);
-                request
-            }
-            Some(_) => self.tuning.show(ui, rect, shown, down, controls).map(Request::Say).or(request),
         }
     }
 
-    fn tabs(&mut self, ui: &Ui, rect: Rect, controls: &mut Controls) -> Option<Request> {
-        let mut left = rect.left();
-        let gap = if rect.width() < 700.0 { GAP } else { 2.0 * GAP };
+    fn path(&mut self, ui: &Ui, rect: Rect, controls: &mut Controls) -> Option<Request> {
         let is_alone = controls.host.plugin_api() == PluginApi::Standalone;
-        for (place, name) in names().chain(is_alone.then_some(DEVICES)).enumerate() {
-            let width = text::width(ui.painter(), name, TEXT) + gap;
-            let place_of_tab = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height() - 2.0));
-            left = place_of_tab.right() + GAP / 4.0;
-            if tab(ui, place_of_tab, name, place == self.page, controls.palette).clicked() {
-                self.leave(controls);
-                self.page = place;
-            }
+        let way = rect.with_max_x(rect.right() - HELP);
+        if let Some(part) = path::show(ui, way, self.part.0, is_alone, controls) {
+            self.leave(controls);
+            (self.part, self.is_new) = (part, true);
         }
-        let help = Rect::from_min_max(pos2(rect.right() - 24.0, rect.top()), rect.max - vec2(0.0, 2.0));
+        let help = Rect::from_min_size(pos2(way.right(), rect.top()), vec2(HELP, HELP));
         let response = tab(ui, help, "?", false, controls.palette);
         if response.hovered() {
             *controls.hint =
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn every_page_has_a_page_of_the_manual() {
-        assert_eq!(names().count() + 1, TOPICS.len(), "and the page of devices");
+        assert_eq!(path::names().count() + 1, TOPICS.len(), "and the page of devices");
         assert!(TOPICS.iter().all(|topic| PAGES.iter().any(|(name, _)| name == topic)));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::curves;
 use crate::editor::controls::Controls;
-use crate::editor::routes;
+use crate::editor::lamps;
 use crate::editor::routes::Ring;
 use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, SMALL, TITLE_HEIGHT};
 use crate::editor::widgets::choice;
@@ -11,22 +11,23 @@ use crate::editor::widgets::text::line;
 use egui::{Align2, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
 use sprung::params::{PARAMS, ParamInfo, Unit};
 use sprung::patch::Patch;
-use sprung::patch::routes::place_of_amount;
 use sprung::preset::Guide;
 
-/// Pages with the sections on them, in the order in which sound is made. The last one has all other sections too.
-const PAGES: [(&str, &[&str]); 6] = [
-    ("Exciters", &["Mallet", "Pluck", "Noise", "Bow", "Breath", "Rattle", "Input", "Strike"]),
-    ("Body, Pitch", &["Body", "Pitch"]),
-    ("Modulation", &["Macros", "LFO 1", "LFO 2", "LFO 3", "Envelope 1", "Envelope 2"]),
-    ("Routes", &["Routes"]),
-    ("Space, Output", &["Strings", "Tremolo", "Drive", "Tone", "Space", "Output"]),
-    ("Voices", &["Voices", "Control"]),
+/// The sections of each page, in the order in which sound is made.
+const PAGES: [&[&str]; 6] = [
+    &["Mallet", "Pluck", "Noise", "Bow", "Breath", "Input", "Strike"],
+    &["Body", "Rattle", "Pitch"],
+    &["Macros", "LFO 1", "LFO 2", "LFO 3", "Envelope 1", "Envelope 2"],
+    &["Routes"],
+    &["Strings", "Tremolo", "Drive", "Tone", "Space", "Output"],
+    &["Voices", "Control"],
 ];
+/// How much of the brightness is left of a part that is off.
+const OFF: f32 = 0.6;
 
-/// The names of the pages.
-pub(super) fn pages() -> impl Iterator<Item = &'static str> {
-    PAGES.iter().map(|(name, _)| *name)
+/// Whether a page shows a section.
+pub(super) fn shows(page: usize, section: &str) -> bool {
+    PAGES.get(page).is_some_and(|sections| sections.contains(&section))
 }
 
 /// The parameters of a section.
@@ -34,9 +35,7 @@ type Section = &'static [ParamInfo];
 
 /// The sections of a page.
 fn sections(page: usize) -> impl Iterator<Item = Section> {
-    let page_of =
-        |section: &str| PAGES.iter().position(|(_, names)| names.contains(&section)).unwrap_or(PAGES.len() - 1);
-    PARAMS.chunk_by(|a, b| a.section == b.section).filter(move |rows| page_of(rows[0].section) == page)
+    PARAMS.chunk_by(|a, b| a.section == b.section).filter(move |rows| shows(page, rows[0].section))
 }
 
 /// The name of a parameter within its section: without the section's name, and for a macro, the preset's name for it.
@@ -54,32 +53,39 @@ fn short_name(info: &ParamInfo, guide: &Guide) -> String {
     }
 }
 
-/// Shows a page of sections of a patch. `is_editable` is false for kits, whose sounds have routes of their own.
+/// Shows a page of sections of a patch: of parts that are off, only the selected one, which `is_new` if it must be scrolled to.
 pub(super) fn show(
     ui: &mut Ui,
     rect: Rect,
     page: usize,
-    (patch, guide, is_editable): (&Patch, &Guide, bool),
+    (selected, is_new): (&str, bool),
+    (patch, guide): (&Patch, &Guide),
     controls: &mut Controls,
 ) {
+    let is_on = |section: Section| lamps::of(section[0].section).is_none_or(|lamp| lamp.is_on(controls));
+    let shown: Vec<(Section, bool)> = sections(page)
+        .map(|section| (section, is_on(section)))
+        .filter(|(section, is_on)| *is_on || section[0].section == selected)
+        .collect();
     let rows = (((rect.height() - TITLE_HEIGHT - PADDING) / CELL_HEIGHT) as usize).max(1);
     let columns = |section: Section| section.len().div_ceil(rows);
-    let count: usize = sections(page).map(columns).sum();
-    let gaps = sections(page).count() as f32 * (2.0 * PADDING + GAP) - GAP;
+    let count: usize = shown.iter().map(|(section, _)| columns(section)).sum();
+    let gaps = shown.len() as f32 * (2.0 * PADDING + GAP) - GAP;
     let [least, most] = CELL_WIDTH;
-    let is_routes = sections(page).all(|section| section[0].section == "Routes");
-    let most = if is_routes { f32::INFINITY } else { most };
     let cell_width = ((rect.width() - gaps) / count.max(1) as f32).floor().clamp(least, most);
-    let cell_width = if is_routes { cell_width.max(110.0) } else { cell_width };
     let width = count as f32 * cell_width + gaps;
     let mut inner = ui.new_child(UiBuilder::new().id_salt("sections").max_rect(rect));
     ScrollArea::horizontal().id_salt(page).auto_shrink(false).show(&mut inner, |ui| {
         let (area, _) = ui.allocate_exact_size(vec2(width, rect.height()), egui::Sense::hover());
         let mut left = area.left();
-        for section in sections(page) {
+        for (section, is_on) in shown {
+            ui.set_opacity(if is_on { 1.0 } else { OFF });
             let size = vec2(columns(section) as f32 * cell_width + 2.0 * PADDING, area.height());
             let panel = Rect::from_min_size(pos2(left, area.top()), size);
             left = panel.right() + GAP;
+            if is_new && section[0].section == selected {
+                ui.scroll_to_rect(panel, None);
+            }
             let palette = controls.palette;
             palette.paint_panel(ui.painter(), panel);
             let title = Rect::from_min_size(panel.min + vec2(PADDING, 2.0), vec2(size.x - PADDING, TITLE_HEIGHT - 2.0));
@@ -103,22 +109,11 @@ pub(super) fn show(
                 let corner = panel.min + vec2(PADDING, TITLE_HEIGHT) + offset;
                 let cell = Rect::from_min_size(corner, vec2(cell_width, CELL_HEIGHT - 4.0)).shrink2(vec2(1.0, 0.0));
                 let ring = Ring::of(info, &patch.routes, controls);
-                match place_of_amount(info.param) {
-                    Some(place) => {
-                        let name = routes::name(place, &patch.routes, guide);
-                        // The amount of a free place means nothing.
-                        match patch.routes.get(place) {
-                            Some(_) => knob::show(ui, cell, info, &name, &ring, controls),
-                            None => knob::show_none(ui.painter(), cell, &name, palette),
-                        }
-                        if is_editable {
-                            routes::show(ui, knob::name_rect(cell), place, &patch.routes, guide, controls);
-                        }
-                    }
-                    None if info.unit == Unit::Choice => {
-                        choice::show(ui, cell, info, &short_name(info, guide), controls);
-                    }
-                    None => knob::show(ui, cell, info, &short_name(info, guide), &ring, controls),
+                let name = short_name(info, guide);
+                if info.unit == Unit::Choice {
+                    choice::show(ui, cell, info, &name, controls);
+                } else {
+                    knob::show(ui, cell, info, &name, &ring, controls);
                 }
             }
         }
@@ -136,9 +131,8 @@ mod tests {
         found.sort_unstable();
         all.sort_unstable();
         assert_eq!(found, all);
-        for (page, (name, names)) in PAGES.iter().enumerate() {
-            let found: Vec<&str> = sections(page).map(|section| section[0].section).collect();
-            assert!(names.iter().all(|name| found.contains(name)), "{name}: {found:?}");
+        for (page, names) in PAGES.iter().enumerate() {
+            assert_eq!(sections(page).count(), names.len(), "{names:?}");
         }
     }
 

@@ -2,21 +2,12 @@
 
 use crate::editor::controls::files::load;
 use crate::editor::controls::{Controls, Hint};
+use crate::editor::lamps::{Lamp, MOVERS};
 use crate::editor::theme::{GAP, Palette, RADIUS, SMALL, TEXT};
 use crate::editor::widgets::text::line;
 use egui::{Align2, Color32, Id, Painter, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use sprung::params::Param;
 use sprung::preset::Playable;
-
-/// Exciters with their names, the levels that switch them on where they were off, in dB, and what they do.
-const MOVERS: [(Param, &str, f32, &str); 6] = [
-    (Param::MalletLevel, "Mallet", 0.0, "A mallet strikes it."),
-    (Param::PluckLevel, "Pluck", 0.0, "A finger or a plectrum pulls it aside and lets go."),
-    (Param::NoiseLevel, "Noise", -6.0, "A burst of noise: a brush, a scrape, breath."),
-    (Param::BowLevel, "Bow", 0.0, "A bow, for as long as a key is held."),
-    (Param::BreathLevel, "Breath", -18.0, "Breath through a reed or lips, for as long as a key is held."),
-    (Param::InputLevel, "Input", 0.0, "Incoming sound drives it, for as long as a key is held."),
-];
 
 /// Shows the tiles, with their names if there is room. Returns whether another exciter acts alone now.
 pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) -> bool {
@@ -29,25 +20,19 @@ pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) 
     let room = (rect.height() - top - 26.0) / MOVERS.len() as f32 - GAP / 2.0;
     let height = room.min(46.0);
     let mut alone = None;
-    for (place, (param, name, level, help)) in MOVERS.into_iter().enumerate() {
+    for (place, mover) in MOVERS.iter().enumerate() {
+        let Lamp { section: name, param, help, .. } = *mover;
         let corner = rect.min + vec2(0.0, top + place as f32 * (height + GAP / 2.0));
         let tile = Rect::from_min_size(corner, vec2(rect.width(), height));
-        let is_on = is_on(param, controls);
+        let is_on = mover.is_on(controls);
         let response = ui.interact(tile, Id::unique(("mover", name)), Sense::click());
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_on, format!("{name} alone")));
         let lamp = Rect::from_center_size(tile.right_top() + vec2(-9.0, 0.5 * height.min(20.0)), vec2(18.0, 20.0));
-        let lamp_response = ui.interact(lamp, Id::unique(("lamp", name)), Sense::click());
-        lamp_response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_on, name));
-        if response.hovered() || lamp_response.hovered() {
-            *controls.hint = Hint::new(name, format!("{help} Click: it alone. Its lamp adds it to the others."));
-        }
-        if lamp_response.clicked() {
-            controls.set(param.info(), if is_on { param.info().min } else { level });
-        } else if response.clicked() {
-            alone = Some((param, name, level));
+        if response.clicked() {
+            alone = Some(mover);
         }
         let is_hovered = response.hovered();
-        let edge = match (is_on, response.has_focus() || lamp_response.has_focus()) {
+        let edge = match (is_on, response.has_focus()) {
             (_, true) => Stroke::new(1.5, palette.text),
             (true, false) => Stroke::new(1.0, palette.accent),
             (false, false) => Stroke::new(1.0, palette.outline),
@@ -61,40 +46,34 @@ pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) 
             let text = if is_on || is_hovered { palette.text } else { palette.muted };
             line(ui.painter(), tile.with_min_x(tile.left() + 44.0), Align2::LEFT_CENTER, name, TEXT, text);
         }
-        if is_on {
-            ui.painter().circle_filled(lamp.center(), 3.5, palette.accent);
-        } else {
-            ui.painter().circle_stroke(lamp.center(), 3.0, Stroke::new(1.0, palette.muted));
+        let is_hovered = mover.show(ui, lamp, controls).hovered() || is_hovered;
+        if is_hovered {
+            *controls.hint = Hint::new(name, format!("{help} Click: it alone. Its lamp adds it to the others."));
         }
     }
-    if let Some((param, name, level)) = alone {
-        act_alone(param, name, level, controls);
+    if let Some(mover) = alone {
+        act_alone(mover, controls);
     }
     alone.is_some()
 }
 
-fn is_on(param: Param, controls: &Controls) -> bool {
-    controls.value(param.info()) > param.info().min
-}
-
 /// Lets one exciter act and no other, as one step that can be undone.
-fn act_alone(param: Param, name: &str, level: f32, controls: &mut Controls) {
+fn act_alone(mover: &Lamp, controls: &mut Controls) {
     controls.release();
     let mut state = controls.params.state();
     let Playable::Preset(preset) = &mut state.playable else { return };
     preset.patch.values = state.values;
-    let wanted = |other: Param| other == param;
-    let changed = MOVERS.into_iter().filter(|(other, ..)| wanted(*other) != is_on(*other, controls));
-    let changed: Vec<Param> = changed.map(|(other, ..)| other).collect();
+    let is_wanted = |other: &Lamp| other.param == mover.param;
+    let changed: Vec<&Lamp> = MOVERS.iter().filter(|other| is_wanted(other) != other.is_on(controls)).collect();
     if changed.is_empty() {
         return;
     }
     for other in changed {
-        preset.patch.set(other, if wanted(other) { level } else { other.info().min });
+        preset.patch.set(other.param, if is_wanted(other) { other.on } else { other.param.info().min });
     }
     controls.history.begin(controls.params);
     load(state.playable, controls.params, controls.host);
-    controls.history.end(format!("{name} alone"), controls.params);
+    controls.history.end(format!("{} alone", mover.section), controls.params);
 }
 
 /// A little picture of an exciter.

@@ -1,6 +1,7 @@
 //! Routes: their names, and the menus that make, change and remove them.
 
 pub(super) mod learn;
+pub(super) mod list;
 
 use crate::editor::controls::Controls;
 use crate::editor::controls::gestures::load;

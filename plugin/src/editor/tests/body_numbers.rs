@@ -149,7 +149,7 @@ fn the_first_five_minutes() {
     let glass = stage.params.state().values.get(Param::Decay);
     assert!(glass > 2.0 * wood, "glass rings longer than rosewood: {wood} s, {glass} s");
 
-    stage.open_page("Space, Output");
+    stage.open_page("Space");
     stage.pick("Space", "room");
     stage.type_value("Space size", "200 %");
     stage.type_value("Space mix", "40 %");

@@ -15,7 +15,7 @@ use sprung::sound::bodies::Point;
 
 impl Band {
     fn show_body(&mut self) {
-        self.stage.harness.get_by_label("Body").click();
+        self.stage.harness.get_by_label("Shape").click();
         self.passes(3);
     }
 

@@ -93,7 +93,7 @@ pub(super) fn compare_page(name: &str, harness: &mut Harness) {
 fn page_of(window: &RgbaImage, scale: f32) -> RgbaImage {
     let size = vec2(window.width() as f32, window.height() as f32) / scale;
     let layout = Layout::of(Rect::from_min_size(Pos2::ZERO, size));
-    let [top, bottom] = [layout.tabs.top(), layout.sections.bottom()].map(|y| (y * scale) as u32);
+    let [top, bottom] = [layout.path.top(), layout.sections.bottom()].map(|y| (y * scale) as u32);
     image::imageops::crop_imm(window, 0, top, window.width(), bottom - top).to_image()
 }
 
@@ -160,7 +160,7 @@ pub(super) fn differing(one: &RgbaImage, other: &RgbaImage, step: u8) -> usize {
 
 /// Every page in a theme, at both sizes, and at 200 %.
 fn pages(theme: Theme) {
-    for (page, name) in crate::editor::pages::names().enumerate() {
+    for (page, name) in crate::editor::pages::path::names().enumerate() {
         let sound = if name == "Kit" { "Acoustic Kit" } else { "Church Bell" };
         let shown = |size, scale| {
             let mut stage = stage(sound, size, scale, theme);

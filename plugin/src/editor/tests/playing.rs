@@ -11,16 +11,16 @@ use egui_kittest::kittest::Queryable as _;
 use sprung::params::Param;
 
 impl Band {
-    fn click(&mut self, role: Role, name: &str) {
+    pub(super) fn click(&mut self, role: Role, name: &str) {
         self.stage.harness.get_by_role_and_label(role, name).click();
         self.passes(4);
     }
 
-    fn value(&self, param: Param) -> f32 {
+    pub(super) fn value(&self, param: Param) -> f32 {
         self.stage.params.state().values.get(param)
     }
 
-    fn undo(&mut self) {
+    pub(super) fn undo(&mut self) {
         self.click(Role::Button, "Undo");
     }
 
@@ -140,7 +140,7 @@ fn the_floor_is_the_space_and_the_tabs_lead_to_all_of_the_sound_and_back() {
     assert_eq!(band.value(Param::Space), 2.0);
     band.click(Role::Tab, "Sound");
     assert!(band.stage.harness.query_by_label("Struck body").is_none());
-    band.stage.harness.get_by_role_and_label(Role::Tab, "Exciters");
+    band.stage.harness.get_by_role_and_label(Role::Tab, "Mallet");
     band.click(Role::Tab, "Play");
     band.rect("Struck body");
     // Everything on the page can be reached by the keyboard.

@@ -1,6 +1,6 @@
 //! Places of the parts of the window.
 
-use crate::editor::theme::{CELL_HEIGHT, GAP, HEADER_HEIGHT, PADDING, STATUS_HEIGHT, TABS_HEIGHT, TITLE_HEIGHT};
+use crate::editor::theme::{CELL_HEIGHT, GAP, HEADER_HEIGHT, PADDING, PATH_HEIGHT, STATUS_HEIGHT, TITLE_HEIGHT};
 use egui::{Rect, pos2};
 
 /// The parts of the window.
@@ -9,7 +9,7 @@ pub(crate) struct Layout {
     pub(crate) header: Rect,
     pub(crate) modes: Rect,
     pub(crate) displays: Rect,
-    pub(crate) tabs: Rect,
+    pub(crate) path: Rect,
     pub(crate) sections: Rect,
     pub(crate) piano: Rect,
     pub(crate) status: Rect,
@@ -34,17 +34,18 @@ impl Layout {
         let piano = Rect::from_min_max(pos2(inner.left(), bottom - piano_height), pos2(inner.right(), bottom));
         bottom = piano.top() - GAP;
         // As many rows of knobs as leave the upper half at least a third of the window.
-        let room = bottom - top - TABS_HEIGHT - GAP;
+        let room = bottom - top - PATH_HEIGHT - GAP;
         let rows = (1..=3).rev().find(|rows| room - section_height(*rows) >= inner.height() * 0.3).unwrap_or(1);
-        let sections =
-            Rect::from_min_max(pos2(inner.left(), bottom - section_height(rows)), pos2(inner.right(), bottom));
+        // Smaller than the smallest window, the header stays free.
+        let sections_top = (bottom - section_height(rows)).max(top + PATH_HEIGHT);
+        let sections = Rect::from_min_max(pos2(inner.left(), sections_top), pos2(inner.right(), bottom));
         bottom = sections.top();
-        let tabs = Rect::from_min_max(pos2(inner.left(), bottom - TABS_HEIGHT), pos2(inner.right(), bottom));
-        bottom = tabs.top() - GAP / 2.0;
+        let path = Rect::from_min_max(pos2(inner.left(), bottom - PATH_HEIGHT), pos2(inner.right(), bottom));
+        bottom = path.top() - GAP / 2.0;
         let split = inner.left() + ((inner.width() - GAP) * 0.65).round();
         let modes = Rect::from_min_max(pos2(inner.left(), top), pos2(split, bottom));
         let displays = Rect::from_min_max(pos2(split + GAP, top), pos2(inner.right(), bottom));
-        Self { header, modes, displays, tabs, sections, piano, status }
+        Self { header, modes, displays, path, sections, piano, status }
     }
 
     /// The area between header and piano, for a page such as the browser.
@@ -64,8 +65,8 @@ mod tests {
         for [width, height] in [LEAST_SIZE, SIZE, [2000, 400], [640, 1600], [2600, 1600]] {
             let window = Rect::from_min_size(pos2(0.0, 0.0), vec2(width as f32, height as f32));
             let layout = Layout::of(window);
-            let Layout { header, modes, displays, tabs, sections, piano, status } = layout;
-            let parts = [header, modes, displays, tabs, sections, piano, status];
+            let Layout { header, modes, displays, path, sections, piano, status } = layout;
+            let parts = [header, modes, displays, path, sections, piano, status];
             for (place, part) in parts.iter().enumerate() {
                 assert!(window.contains_rect(*part), "{width} × {height}: part {place} {part:?}");
                 assert!(part.width() > 100.0 && part.height() >= 18.0, "{width} × {height}: part {place} {part:?}");

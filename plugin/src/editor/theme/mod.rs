@@ -230,7 +230,8 @@ pub(super) const PADDING: f32 = 8.0;
 pub(super) const RADIUS: u8 = 5;
 pub(super) const HEADER_HEIGHT: f32 = 30.0;
 pub(super) const TITLE_HEIGHT: f32 = 20.0;
-pub(super) const TABS_HEIGHT: f32 = 24.0;
+/// Height of the way of the sound: three parts, one below the other.
+pub(super) const PATH_HEIGHT: f32 = 58.0;
 pub(super) const STATUS_HEIGHT: f32 = 18.0;
 /// Diameter of a knob.
 pub(super) const KNOB: f32 = 34.0;

@@ -3,12 +3,17 @@
 use crate::editor::controls::Hint;
 use crate::editor::theme::{Palette, SMALL};
 use crate::editor::widgets::text::{line, width};
-use egui::{Align2, Id, Rect, Role, Sense, Ui, WidgetInfo, pos2};
+use egui::{Align2, Id, PopupAnchor, Rect, Role, Sense, Tooltip, Ui, WidgetInfo, pos2};
 use sprung::engine::Telemetry;
 use sprung::text::counted;
+use std::time::Duration;
 
 /// How often the load is computed, in seconds.
 const INTERVAL: f64 = 0.5;
+/// Seconds for which the pointer rests before a hint stands beside it.
+const REST: f32 = 0.7;
+/// The largest width of such a hint.
+const WIDEST: f32 = 280.0;
 
 /// The load of the audio thread over the last half second.
 #[derive(Default)]
@@ -81,7 +86,25 @@ impl StatusLine {
             message.clone_into(&mut self.message);
             self.is_unread = !message.is_empty();
         }
-        paint(ui, rect, hint.filter(|_| !self.is_unread), message, right, palette);
+        let hint = hint.filter(|_| !self.is_unread);
+        paint(ui, rect, hint, message, right, palette);
+        if let Some(hint) = hint {
+            show_at_pointer(ui, hint);
+        }
+    }
+}
+
+/// Shows a hint beside the pointer, whole, once the pointer has rested.
+fn show_at_pointer(ui: &Ui, Hint { title, help }: &Hint) {
+    let (rested, is_down) = ui.input(|input| (input.pointer.time_since_last_movement(), input.pointer.any_down()));
+    if rested < REST {
+        ui.ctx().request_repaint_after(Duration::from_secs_f32(REST - rested));
+    } else if !is_down {
+        let tip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), Id::unique("hint"), PopupAnchor::Pointer);
+        tip.width(WIDEST).show(|ui| {
+            ui.strong(title);
+            ui.label(help);
+        });
     }
 }
 
@@ -115,7 +138,6 @@ mod tests {
     use super::*;
     use sprung::engine::TelemetryWriter;
     use std::sync::Arc;
-    use std::time::Duration;
 
     #[test]
     fn the_load_is_that_of_the_last_half_second() {

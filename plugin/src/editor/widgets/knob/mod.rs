@@ -7,9 +7,10 @@ use super::text::line;
 use super::typing::{type_value, typed};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::routes::Ring;
-use crate::editor::theme::{KNOB, Palette, SMALL};
+use crate::editor::theme::{KNOB, SMALL};
+use crate::marks::Mark;
 use egui::accesskit::{Action, ActionData};
-use egui::{Align2, CursorIcon, Event, EventFilter, Id, Key, Painter, Rect, Response, Sense, Stroke, Ui};
+use egui::{Align2, CursorIcon, Event, EventFilter, Id, Key, Rect, Response, Sense, Stroke, Ui};
 use egui::{WidgetInfo, pos2, vec2};
 use face::Face;
 use sprung::params::{ParamInfo, Unit};
@@ -52,21 +53,20 @@ pub(super) fn id(info: &ParamInfo) -> Id {
     Id::unique(("knob", info.id))
 }
 
-/// Shows a parameter's knob in a cell, under the title `name`; `ring` shows its modulation.
-pub(crate) fn show(
-    ui: &mut Ui,
-    cell: Rect,
-    info: &'static ParamInfo,
-    name: &str,
-    ring: &Ring,
-    controls: &mut Controls,
-) {
-    let parts = Parts::of(cell);
-    let mut response = ui.interact(cell.with_max_y(parts.value.top()), id(info), Sense::click_and_drag());
-    let value_response =
-        ui.interact(parts.value, id(info).with("value"), Sense::click()).on_hover_cursor(CursorIcon::Text);
+/// What is drawn of a parameter after the user's actions on it.
+struct Turned {
+    text: String,
+    mark: Option<Mark>,
+    is_hovered: bool,
+    is_focused: bool,
+}
+
+/// Lets the user turn a parameter in one place and type its value in another; `travel` pixels turn it from end to end.
+fn turn(ui: &Ui, turned: Rect, value: Rect, travel: f32, info: &'static ParamInfo, controls: &mut Controls) -> Turned {
+    let mut response = ui.interact(turned, id(info), Sense::click_and_drag());
+    let value_response = ui.interact(value, id(info).with("value"), Sense::click()).on_hover_cursor(CursorIcon::Text);
     value_response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, format!("Type {}", info.name)));
-    drag(ui, &mut response, info, controls);
+    drag(ui, &mut response, travel, info, controls);
     wheel(ui, &response, info, controls);
     keys(ui, &response, info, controls);
     let asks = response.has_focus() && ui.input(|input| input.key_pressed(Key::Enter));
@@ -91,33 +91,69 @@ pub(crate) fn show(
         let now = newest.map_or(String::new(), |value| format!(" › {}", info.format(value)));
         *controls.hint = Hint::new(format!("{} {text}{now}{said}", info.name), info.help);
     }
+    Turned { text, mark, is_hovered, is_focused: response.has_focus() }
+}
+
+/// Shows a parameter's knob in a cell, under the title `name`; `ring` shows its modulation.
+pub(crate) fn show(
+    ui: &mut Ui,
+    cell: Rect,
+    info: &'static ParamInfo,
+    name: &str,
+    ring: &Ring,
+    controls: &mut Controls,
+) {
+    let parts = Parts::of(cell);
+    let turned = turn(ui, cell.with_max_y(parts.value.top()), parts.value, TRAVEL, info, controls);
     let palette = controls.palette;
     let face = Face {
         position: controls.position(info),
         origin: info.normalise(info.default) as f32,
         offset: controls.params.knobs()[info.param as usize].offset(),
         ring,
-        is_hovered,
-        is_focused: response.has_focus(),
+        is_hovered: turned.is_hovered,
+        is_focused: turned.is_focused,
     };
     face::paint(ui.painter(), parts.face, palette, &face);
     // In the gap of the arc.
-    face::paint_mark(ui.painter(), parts.face.center_bottom() - vec2(0.0, 3.0), mark.as_ref(), palette);
-    let colour = if is_hovered { palette.text } else { palette.muted };
+    face::paint_mark(ui.painter(), parts.face.center_bottom() - vec2(0.0, 3.0), turned.mark.as_ref(), palette);
     line(ui.painter(), parts.name, Align2::CENTER_CENTER, name, SMALL, palette.text);
-    if !typed(ui, parts.value, id(info).with("field"), info, controls) {
-        line(ui.painter(), parts.value, Align2::CENTER_CENTER, &text, SMALL, colour);
+    show_value(ui, parts.value, Align2::CENTER_CENTER, info, &turned, controls);
+}
+
+/// Shows a parameter as a bar from the position of zero, with its value beside it.
+pub(crate) fn show_bar(ui: &mut Ui, bar: Rect, value: Rect, info: &'static ParamInfo, controls: &mut Controls) {
+    let turned = turn(ui, bar, value, bar.width(), info, controls);
+    let palette = controls.palette;
+    let track = Rect::from_center_size(bar.center(), vec2(bar.width(), 4.0));
+    let x = |position: f32| bar.left() + position * bar.width();
+    let [zero, now] = [info.normalise(0.0) as f32, controls.position(info)].map(x);
+    let colour = if turned.is_hovered { palette.muted.gamma_multiply(0.55) } else { palette.line };
+    ui.painter().rect_filled(track, 2.0, colour);
+    ui.painter().rect_filled(track.with_min_x(zero.min(now)).with_max_x(zero.max(now)), 2.0, palette.modulation);
+    ui.painter().vline(zero, bar.y_range().shrink(4.0), Stroke::new(1.0, palette.muted));
+    let edge = if turned.is_focused { Stroke::new(1.5, palette.accent) } else { Stroke::NONE };
+    ui.painter().circle(pos2(now, bar.center().y), 5.0, palette.text, edge);
+    face::paint_mark(ui.painter(), bar.center_bottom() - vec2(0.0, 2.0), turned.mark.as_ref(), palette);
+    show_value(ui, value, Align2::RIGHT_CENTER, info, &turned, controls);
+}
+
+/// Shows the value, or the field in which it is typed.
+fn show_value(
+    ui: &mut Ui,
+    rect: Rect,
+    align: Align2,
+    info: &'static ParamInfo,
+    turned: &Turned,
+    controls: &mut Controls,
+) {
+    let colour = if turned.is_hovered { controls.palette.text } else { controls.palette.muted };
+    if !typed(ui, rect, id(info).with("field"), info, controls) {
+        line(ui.painter(), rect, align, &turned.text, SMALL, colour);
     }
 }
 
-/// Shows an empty cell for a knob, under the title `name`.
-pub(crate) fn show_none(painter: &Painter, cell: Rect, name: &str, palette: &Palette) {
-    let parts = Parts::of(cell);
-    painter.circle_stroke(parts.face.center(), KNOB / 2.0 - 3.0, Stroke::new(1.0, palette.line));
-    line(painter, parts.name, Align2::CENTER_CENTER, name, SMALL, palette.muted);
-}
-
-fn drag(ui: &Ui, response: &mut Response, info: &'static ParamInfo, controls: &mut Controls) {
+fn drag(ui: &Ui, response: &mut Response, travel: f32, info: &'static ParamInfo, controls: &mut Controls) {
     let index = info.param as usize;
     if response.drag_started() {
         controls.interaction.dragged = f64::from(controls.position(info));
@@ -125,7 +161,7 @@ fn drag(ui: &Ui, response: &mut Response, info: &'static ParamInfo, controls: &m
     if response.dragged() {
         let moved = response.drag_delta();
         let fine = if ui.input(|input| input.modifiers.shift) { FINE } else { 1.0 };
-        let dragged = controls.interaction.dragged + f64::from((moved.x - moved.y) / TRAVEL) * fine;
+        let dragged = controls.interaction.dragged + f64::from((moved.x - moved.y) / travel) * fine;
         controls.interaction.dragged = dragged.clamp(0.0, 1.0);
         let position = rounded(info, controls.interaction.dragged);
         if moved != egui::Vec2::ZERO && position as f32 != controls.position(info) {

@@ -1,0 +1,86 @@
+//! Lamps that switch parts of the sound off and on: a level goes to its end, and comes back to where it was.
+
+use crate::editor::controls::Controls;
+use egui::{Id, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo};
+use sprung::params::Param;
+
+/// A part of the sound that can be off.
+pub(crate) struct Lamp {
+    /// The section of the part's parameters.
+    pub(crate) section: &'static str,
+    /// The parameter that is least while the part is off.
+    pub(crate) param: Param,
+    /// Its value for a part that has not been on before.
+    pub(crate) on: f32,
+    /// What the part does.
+    pub(crate) help: &'static str,
+}
+
+const fn lamp(section: &'static str, param: Param, on: f32, help: &'static str) -> Lamp {
+    Lamp { section, param, on, help }
+}
+
+/// What moves the body.
+pub(crate) const MOVERS: [Lamp; 6] = [
+    lamp("Mallet", Param::MalletLevel, 0.0, "A mallet strikes it."),
+    lamp("Pluck", Param::PluckLevel, 0.0, "A finger or a plectrum pulls it aside and lets go."),
+    lamp("Noise", Param::NoiseLevel, -6.0, "A burst of noise: a brush, a scrape, breath."),
+    lamp("Bow", Param::BowLevel, 0.0, "A bow, for as long as a key is held."),
+    lamp("Breath", Param::BreathLevel, -18.0, "Breath through a reed or lips, for as long as a key is held."),
+    lamp("Input", Param::InputLevel, 0.0, "Incoming sound drives it, for as long as a key is held."),
+];
+
+/// What touches the body, and what its sound passes through.
+const OTHERS: [Lamp; 5] = [
+    lamp("Rattle", Param::Rattle, 1.0, "Something loose lies on it or hangs at it, and strikes back."),
+    lamp("Strings", Param::StringsLevel, 30.0, "Strings that ring along."),
+    lamp("Tremolo", Param::TremoloDepth, 50.0, "A motor takes the loudness down and up again."),
+    lamp("Drive", Param::Drive, 6.0, "Lifts what is soft and holds what is loud."),
+    lamp("Space", Param::Space, 1.0, "A plate, a spring tank or a room that reverberates."),
+];
+
+/// The lamp of a section, if it has one.
+pub(crate) fn of(section: &str) -> Option<&'static Lamp> {
+    const ALL: [&[Lamp]; 2] = [&MOVERS, &OTHERS];
+    ALL.into_iter().flatten().find(|lamp| lamp.section == section)
+}
+
+impl Lamp {
+    /// Whether the part is on.
+    pub(crate) fn is_on(&self, controls: &Controls) -> bool {
+        controls.value(self.param.info()) > self.param.info().min
+    }
+
+    /// Shows the lamp in the middle of the place where it can be clicked.
+    pub(crate) fn show(&self, ui: &Ui, rect: Rect, controls: &mut Controls) -> Response {
+        let (is_on, palette) = (self.is_on(controls), controls.palette);
+        let response = ui.interact(rect, Id::unique(("lamp", self.section)), Sense::click());
+        response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_on, self.section));
+        if response.clicked() {
+            self.switch(controls);
+        }
+        if is_on {
+            ui.painter().circle_filled(rect.center(), 3.5, palette.accent);
+        } else {
+            ui.painter().circle_stroke(rect.center(), 3.0, Stroke::new(1.0, palette.muted));
+        }
+        if response.has_focus() {
+            ui.painter().circle_stroke(rect.center(), 6.0, Stroke::new(1.5, palette.text));
+        }
+        response
+    }
+
+    fn switch(&self, controls: &mut Controls) {
+        let info = self.param.info();
+        // Another sound's level would not suit this one.
+        let part = (controls.params.name(), self.section);
+        let value = if self.is_on(controls) {
+            let before = controls.value(info);
+            controls.interaction.switched_off.insert(part, before);
+            info.min
+        } else {
+            controls.interaction.switched_off.remove(&part).unwrap_or(self.on)
+        };
+        controls.set(info, value);
+    }
+}

@@ -1,0 +1,130 @@
+//! The way of the sound as one picture, from the keys to the output: parts with lamps, one of which is shown below.
+
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::lamps;
+use crate::editor::theme::{GAP, RADIUS, SMALL, TEXT};
+use crate::editor::widgets::text;
+use egui::{Align2, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+
+/// A part: its name, which is that of its section if it has one, and the page that shows it.
+pub(super) type Part = (&'static str, usize);
+
+/// The page of the devices, which only the standalone program has.
+const DEVICES: Part = ("Devices", 9);
+
+/// Parts by panel and column. The sound takes its way through all panels but the last.
+const PATH: [&[&[Part]]; 5] = [
+    &[&[("Pitch", 1), ("Voices", 5), ("Tuning", 8)]],
+    &[&[("Mallet", 0), ("Pluck", 0), ("Noise", 0)], &[("Bow", 0), ("Breath", 0), ("Input", 0)]],
+    &[&[("Body", 1), ("Model", 6), ("Rattle", 1)]],
+    &[&[("Strings", 4), ("Tremolo", 4), ("Drive", 4)], &[("Tone", 4), ("Space", 4), ("Output", 4)]],
+    &[&[("Modulation", 2), ("Routes", 3), ("Kit", 7)]],
+];
+
+/// Width from which on the text is larger.
+const WIDE: f32 = 900.0;
+/// Height of a part.
+const ROW: f32 = 17.0;
+/// Space inside a panel at the left and right.
+const MARGIN: f32 = 4.0;
+/// Width of the place of a lamp.
+const LAMP: f32 = 16.0;
+
+/// A part of each page, in the order of the pages.
+#[cfg(test)]
+pub(in crate::editor) fn names() -> impl Iterator<Item = &'static str> {
+    let parts = || PATH.into_iter().flatten().copied().flatten();
+    (0..DEVICES.1).filter_map(move |page| parts().find(|part| part.1 == page)).map(|(name, _)| *name)
+}
+
+/// Shows the path, of which one part is selected. Returns the one that is clicked.
+pub(super) fn show(ui: &Ui, rect: Rect, selected: &str, is_alone: bool, controls: &mut Controls) -> Option<Part> {
+    let palette = controls.palette;
+    let mut panels = PATH.map(<[_]>::to_vec);
+    if is_alone {
+        panels[PATH.len() - 1].push(&[DEVICES]);
+    }
+    let size = if rect.width() < WIDE { SMALL } else { TEXT };
+    let width = |column: &[Part]| {
+        let texts = column.iter().map(|(name, _)| text::width(ui.painter(), name, size));
+        (indent(column) + texts.fold(0.0, f32::max) + 2.0 * MARGIN).ceil()
+    };
+    let widths = panels.each_ref().map(|panel| panel.iter().map(|column| width(column)).sum::<f32>() + 2.0 * MARGIN);
+    let rest = rect.width() - widths.iter().sum::<f32>();
+    let gap = (rest / (PATH.len() - 1) as f32).clamp(GAP / 2.0, 12.0 * GAP);
+    let (mut left, mut clicked) = (rect.left(), None);
+    for (place, (panel, panel_width)) in panels.iter().zip(widths).enumerate() {
+        let frame = Rect::from_min_size(pos2(left, rect.top()), vec2(panel_width, 3.0 * ROW + 2.0));
+        palette.paint_panel(ui.painter(), frame);
+        if place < PATH.len() - 2 {
+            let wire = [frame.right_center(), frame.right_center() + vec2(gap, 0.0)];
+            ui.painter().line_segment(wire, Stroke::new(2.0, palette.accent));
+        }
+        left = frame.right() + gap;
+        let mut column_left = frame.left() + MARGIN;
+        for column in panel {
+            let column_width = width(column);
+            for (row, part) in column.iter().enumerate() {
+                let corner = pos2(column_left, frame.top() + 1.0 + row as f32 * ROW);
+                let item = Rect::from_min_size(corner, vec2(column_width, ROW));
+                let text = item.with_min_x(item.left() + indent(column));
+                clicked = show_part(ui, [item, text], *part, (selected, size), controls).then_some(*part).or(clicked);
+            }
+            column_left += column_width;
+        }
+    }
+    clicked
+}
+
+/// How far from the left of a column the names begin.
+fn indent(column: &[Part]) -> f32 {
+    if column.iter().any(|(name, _)| lamps::of(name).is_some()) { LAMP } else { 2.0 * MARGIN }
+}
+
+/// Shows a part in a place, and its name in a part of it. Returns whether it is clicked.
+fn show_part(
+    ui: &Ui,
+    [rect, text]: [Rect; 2],
+    (name, _): Part,
+    (selected, size): (&str, f32),
+    controls: &mut Controls,
+) -> bool {
+    let (palette, lamp, is_selected) = (controls.palette, lamps::of(name), name == selected);
+    let response = ui.interact(rect, Id::unique(("part", name)), Sense::click());
+    response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_selected, name));
+    if is_selected {
+        ui.painter().rect(rect, RADIUS, palette.raised, Stroke::new(1.0, palette.accent), StrokeKind::Inside);
+    }
+    if response.has_focus() {
+        ui.painter().rect_stroke(rect, RADIUS, Stroke::new(1.5, palette.text), StrokeKind::Inside);
+    }
+    let is_on = lamp.is_none_or(|lamp| lamp.is_on(controls));
+    let mut is_hovered = response.hovered();
+    if let Some(lamp) = lamp {
+        is_hovered |= lamp.show(ui, rect.with_max_x(rect.left() + LAMP), controls).hovered();
+        if is_hovered {
+            let does = if is_on { "switches it off" } else { "switches it on" };
+            *controls.hint = Hint::new(name, format!("{} Its lamp {does}.", lamp.help));
+        }
+    }
+    let colour = if is_on || is_selected || is_hovered { palette.text } else { palette.muted };
+    text::line(ui.painter(), text, Align2::LEFT_CENTER, name, size, colour);
+    response.clicked()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::pages::sections;
+    use sprung::params::PARAMS;
+
+    #[test]
+    fn every_lamp_is_on_the_way_and_every_part_on_the_page_of_its_section() {
+        let parts: Vec<Part> = PATH.into_iter().flatten().copied().flatten().copied().collect();
+        for section in PARAMS.chunk_by(|a, b| a.section == b.section).map(|rows| rows[0].section) {
+            let part = parts.iter().find(|(name, _)| *name == section);
+            assert!(part.is_some() || lamps::of(section).is_none(), "{section}");
+            assert!(part.is_none_or(|(_, page)| sections::shows(*page, section)), "{section}");
+        }
+    }
+}
