@@ -42,7 +42,7 @@ impl Texture {
     }
 
     /// The colour at a point with coordinates from 0 to 1, interpolated between the four nearest pixels.
-    fn sample(&self, [u, v]: [f32; 2]) -> [f32; 4] {
+    fn sample(&self, [u, v, ..]: [f32; 4]) -> [f32; 4] {
         let (x, y) = (u * self.size[0] as f32 - 0.5, v * self.size[1] as f32 - 0.5);
         let (left, top) = (x.floor(), y.floor());
         let (right, below) = (x - left, y - top);
@@ -89,17 +89,21 @@ impl Canvas {
             let first = (least >> 8).max(clip.min.round() as i64).max(0);
             first..((most >> 8) + 1).min(clip.max.round() as i64).min(self.size[axis])
         });
+        // Most triangles have one colour, and one place in the texture.
+        let [uvs, colours] = [corners.map(|corner| [corner.uv.x, corner.uv.y, 0.0, 0.0]), corners.map(colour_of)];
+        let is_even = |values: [[f32; 4]; 3]| values[0] == values[1] && values[1] == values[2];
+        let texel = is_even(uvs).then(|| texture.sample(uvs[0]));
+        let colour = is_even(colours).then_some(colours[0]);
+        let both = texel.zip(colour).map(|(texel, colour)| product(texel, colour));
         for y in rows {
             for x in columns.clone() {
-                let centre = [x * 256 + 128, y * 256 + 128];
-                let Some(shares) = inside(places, centre) else { continue };
-                let shares = shares.map(|share| share as f32 / area as f32);
-                let mixed = |of: &dyn Fn(&Vertex) -> f32| -> f32 {
-                    corners.iter().zip(shares).map(|(corner, share)| of(corner) * share).sum()
-                };
-                let texel = texture.sample([mixed(&|corner| corner.uv.x), mixed(&|corner| corner.uv.y)]);
-                let colour = from_fn(|i| mixed(&|corner| f32::from(corner.color.to_array()[i])) * texel[i] / 255.0);
-                self.blend(x, y, colour);
+                let Some(weights) = inside(places, [x * 256 + 128, y * 256 + 128]) else { continue };
+                let blended = both.unwrap_or_else(|| {
+                    let shares = weights.map(|weight| weight as f32 / area as f32);
+                    let texel = texel.unwrap_or_else(|| texture.sample(mixed(uvs, shares)));
+                    product(texel, colour.unwrap_or_else(|| mixed(colours, shares)))
+                });
+                self.blend(x, y, blended);
             }
         }
     }
@@ -109,6 +113,19 @@ impl Canvas {
             self.triangle(from_fn(|i| mesh.vertices[corners[i] as usize]), scale, clip, texture);
         }
     }
+}
+
+fn colour_of(corner: Vertex) -> [f32; 4] {
+    corner.color.to_array().map(f32::from)
+}
+
+/// The mean of the values at the corners.
+fn mixed(corners: [[f32; 4]; 3], shares: [f32; 3]) -> [f32; 4] {
+    from_fn(|i| corners[0][i] * shares[0] + corners[1][i] * shares[1] + corners[2][i] * shares[2])
+}
+
+fn product(texel: [f32; 4], colour: [f32; 4]) -> [f32; 4] {
+    from_fn(|i| texel[i] * colour[i] / 255.0)
 }
 
 /// The weights of the corners at a point; none if it is outside. A point on an edge belongs only to the triangle to the
