@@ -80,6 +80,11 @@ impl Default for SprungParams {
 }
 
 impl SprungParams {
+    /// The parameters of a new instance of the instrument.
+    pub(crate) fn of_instrument() -> Self {
+        Self::of(State::inviting(), false)
+    }
+
     /// The parameters of the effect.
     pub(crate) fn of_effect() -> Self {
         Self::of(State::default().driven(), true)

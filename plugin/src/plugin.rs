@@ -24,7 +24,7 @@ pub struct Sprung {
 
 impl Default for Sprung {
     fn default() -> Self {
-        let params = Arc::new(SprungParams::default().of_host());
+        let params = Arc::new(SprungParams::of_instrument().of_host());
         publish(&params);
         Self { params, live: None }
     }

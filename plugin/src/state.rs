@@ -117,6 +117,11 @@ impl From<State> for Read {
 }
 
 impl State {
+    /// The state of a new instance: a body that invites to strike it, and not the one plain mass of [`State::default`].
+    pub(crate) fn inviting() -> Self {
+        Playable::find("Church Bell").map_or_else(|_| Self::default(), |bell| Self::new(bell, 0, VIEW))
+    }
+
     /// The state of a preset or kit, with all knobs at the positions of its values.
     pub(crate) fn new(playable: Playable, seed: u64, view: View) -> Self {
         let values = match &playable {

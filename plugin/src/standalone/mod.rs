@@ -94,7 +94,7 @@ fn start(args: Args) -> Result<(), String> {
         let text = device::list() + &midi_ports::list();
         return std::io::stdout().write_all(text.as_bytes()).map_err(|error| format!("stdout: {error}"));
     }
-    let params = Arc::new(SprungParams::default());
+    let params = Arc::new(SprungParams::of_instrument());
     let mut store = Store::of_user();
     report(&params, store.restore(&params));
     if let Some(name) = &args.sound {

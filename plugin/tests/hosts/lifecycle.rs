@@ -194,19 +194,21 @@ pub(crate) fn the_tail_is_exact_and_then_the_plugin_may_sleep() {
 }
 
 pub(crate) fn blocks_without_frames_and_short_blocks_do_no_harm() {
-    let mut player = Instance::new().play(RATE, 512);
+    let (mut instance, patch) = (Instance::new(), Patch::default());
+    load(&mut instance, &patch);
+    let mut player = instance.play(RATE, 512);
     assert_clean("empty blocks", &player.render(&[], 512, || 512).channels);
     for frames in [0, 1, 0, 3, 512, 0] {
         player.audio.process(&EventBuffer::new(), frames);
     }
-    let patch = Patch::default();
     player.audio.reset();
     plays_from_the_beginning("after empty blocks", &mut player, &patch, RATE);
 }
 
 /// Repeated activation and starting without a block in between; switching to offline and back.
 pub(crate) fn starts_and_stops_need_no_block_in_between() {
-    let mut instance = Instance::new();
+    let (mut instance, patch) = (Instance::new(), Patch::default());
+    load(&mut instance, &patch);
     for round in 0..20 {
         instance = instance.play(44_100.0 + f64::from(round), 32 << (round % 5)).stop();
         let handle = instance.clack.plugin_handle();
@@ -214,7 +216,6 @@ pub(crate) fn starts_and_stops_need_no_block_in_between() {
         let render: PluginRender = handle.get_extension().unwrap();
         render.set(&handle, mode).unwrap();
     }
-    let patch = Patch::default();
     plays_from_the_beginning("after all that", &mut instance.play(RATE, 480), &patch, RATE);
 }
 

@@ -204,7 +204,7 @@ pub(crate) fn a_broken_state_is_set_aside() {
     let aside = stand.state().with_file_name("standalone.not-understood-1.json");
     assert!(stderr.contains("not a state of Sprung") && stderr.contains(aside.to_str().unwrap()), "{stderr}");
     assert_eq!(std::fs::read_to_string(aside).unwrap(), "{\"preset\": 1");
-    assert!(preset(&stand.state()).contains("Init"));
+    assert!(preset(&stand.state()).contains("Church Bell"));
 }
 
 pub(crate) fn what_is_missing_is_said() {

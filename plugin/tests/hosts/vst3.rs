@@ -14,6 +14,7 @@ use sprung::engine::EventKind;
 use sprung::io::Song;
 use sprung::params::{PARAMS, Param, ParamInfo, Unit};
 use sprung::patch::Patch;
+use sprung::preset::Preset;
 use sprung::sound::Kit;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -267,7 +268,12 @@ pub(crate) fn automation_has_the_bits_of_the_engine() {
             }
         }
         song.sort_by_key(|At(frame, ..)| *frame);
-        let expected = render(&Patch::default().with(param, first), SAMPLE_RATE.into(), &song, FRAMES);
+        let expected = render(
+            &Preset::find("Church Bell").unwrap().patch.clone().with(param, first),
+            SAMPLE_RATE.into(),
+            &song,
+            FRAMES,
+        );
         assert_same_bits(&format!("automated {}", info.id), &samples(&audio), &expected);
     }
 }
