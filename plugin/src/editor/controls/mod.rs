@@ -57,6 +57,8 @@ pub(super) struct Interaction {
     /// The parameter that waits for a source of a route.
     pub(super) learning: Option<Learning>,
     pub(super) binding: Option<Binding>,
+    /// The parameter that the user has moved last, until somebody has looked.
+    pub(super) touched: Option<usize>,
     /// The values of parts that have been switched off, by sound and section.
     pub(super) switched_off: HashMap<(String, &'static str), f32>,
 }
@@ -131,6 +133,7 @@ impl Controls<'_> {
     /// Moves a knob; [`Controls::release`] ends the gesture.
     pub(super) fn turn(&mut self, info: &ParamInfo, position: f64) {
         let index = info.param as usize;
+        self.interaction.touched = Some(index);
         if self.interaction.gestures.moving() != Some(index) {
             self.release();
             self.history.begin(self.params);

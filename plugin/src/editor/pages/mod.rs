@@ -13,6 +13,7 @@ use crate::editor::body::page::BodyPage;
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::keyboard::grid::KeyGrid;
+use crate::editor::lamps;
 use crate::editor::routes;
 use crate::editor::theme::GAP;
 use crate::editor::theme::layout::Layout;
@@ -21,6 +22,7 @@ use crate::link::Link;
 use egui::{Rect, Ui, pos2, vec2};
 use nice_plug_core::context::PluginApi;
 use path::Part;
+use sprung::params::PARAMS;
 use tuning::TuningPage;
 
 /// The manual's page for each page, in their order.
@@ -85,6 +87,7 @@ impl Pages {
         (down, voices): (u128, u32),
         controls: &mut Controls,
     ) -> Option<Request> {
+        self.follow(controls);
         let request = self.path(ui, layout.path, controls);
         let (rect, (part, page)) = (layout.sections, self.part);
         match part {
@@ -118,6 +121,13 @@ impl Pages {
                 request
             }
         }
+    }
+
+    /// Selects the part of which a knob has been turned: it must not vanish under the hand that turns it down.
+    fn follow(&mut self, controls: &mut Controls) {
+        let touched = controls.interaction.touched.take().map(|index| PARAMS[index].section);
+        let here = touched.filter(|section| lamps::of(section).is_some() && sections::shows(self.part.1, section));
+        self.part.0 = here.unwrap_or(self.part.0);
     }
 
     fn path(&mut self, ui: &Ui, rect: Rect, controls: &mut Controls) -> Option<Request> {

@@ -1,6 +1,6 @@
 //! All routes of a sound as sentences: what moves what, and how far.
 
-use super::{name, show as show_menu, source_name};
+use super::{Ring, name, show as show_menu, source_name};
 use crate::editor::controls::Controls;
 use crate::editor::theme::{GAP, PADDING, SMALL, TEXT, TITLE_HEIGHT};
 use crate::editor::widgets::{knob, text};
@@ -78,7 +78,8 @@ pub(in crate::editor) fn show(
                     for (word, colour) in words {
                         left = line(ui, sentence.with_min_x(left.min(sentence.right())), &word, TEXT, colour);
                     }
-                    knob::show_bar(ui, bar, value, info, controls);
+                    let ring = Ring::of(info, &patch.routes, controls);
+                    knob::show_bar(ui, [bar, value], info, &ring, controls);
                 }
             }
             if is_editable {

@@ -83,6 +83,13 @@ fn a_part_that_is_off_is_shown_only_while_selected_and_comes_back_as_it_was() {
     assert!(!is_shown(&band, "Noise colour") && is_shown(&band, "Mallet mass") && is_shown(&band, "Bow force"));
     band.click(Role::CheckBox, "Noise");
     assert!(band.value(Param::NoiseLevel) == before && is_shown(&band, "Noise colour"));
+    // What is turned down to nothing stays under the hand.
+    let knob = band.stage.harness.get_by_role_and_label(Role::Slider, "Mallet level").rect().center();
+    band.press(knob, true);
+    band.event(egui::Event::PointerMoved(knob + vec2(0.0, 400.0)));
+    band.press(knob + vec2(0.0, 400.0), false);
+    assert!(band.value(Param::MalletLevel) == Param::MalletLevel.info().min && is_shown(&band, "Mallet mass"));
+    band.undo();
     // What was off before has a level that is heard.
     band.click(Role::CheckBox, "Drive");
     assert_eq!(band.value(Param::Drive), 6.0);

@@ -121,8 +121,14 @@ pub(crate) fn show(
     show_value(ui, parts.value, Align2::CENTER_CENTER, info, &turned, controls);
 }
 
-/// Shows a parameter as a bar from the position of zero, with its value beside it.
-pub(crate) fn show_bar(ui: &mut Ui, bar: Rect, value: Rect, info: &'static ParamInfo, controls: &mut Controls) {
+/// Shows a parameter as a bar from the position of zero, with its value beside it; `ring` shows its modulation.
+pub(crate) fn show_bar(
+    ui: &mut Ui,
+    [bar, value]: [Rect; 2],
+    info: &'static ParamInfo,
+    ring: &Ring,
+    controls: &mut Controls,
+) {
     let turned = turn(ui, bar, value, bar.width(), info, controls);
     let palette = controls.palette;
     let track = Rect::from_center_size(bar.center(), vec2(bar.width(), 4.0));
@@ -132,8 +138,18 @@ pub(crate) fn show_bar(ui: &mut Ui, bar: Rect, value: Rect, info: &'static Param
     ui.painter().rect_filled(track, 2.0, colour);
     ui.painter().rect_filled(track.with_min_x(zero.min(now)).with_max_x(zero.max(now)), 2.0, palette.modulation);
     ui.painter().vline(zero, bar.y_range().shrink(4.0), Stroke::new(1.0, palette.muted));
+    for range in &ring.ranges {
+        let [from, to] = range.map(x);
+        let above = bar.center().y - 5.0;
+        ui.painter().hline(from.min(to)..=from.max(to), above, Stroke::new(1.5, palette.modulation));
+    }
     let edge = if turned.is_focused { Stroke::new(1.5, palette.accent) } else { Stroke::NONE };
     ui.painter().circle(pos2(now, bar.center().y), 5.0, palette.text, edge);
+    let offset = controls.params.knobs()[info.param as usize].offset();
+    let host = (offset.abs() > 1e-4).then_some((controls.position(info) + offset).clamp(0.0, 1.0));
+    for mark in ring.marks.iter().copied().chain(host) {
+        ui.painter().circle_filled(pos2(x(mark), bar.center().y), 3.0, palette.modulation);
+    }
     face::paint_mark(ui.painter(), bar.center_bottom() - vec2(0.0, 2.0), turned.mark.as_ref(), palette);
     show_value(ui, value, Align2::RIGHT_CENTER, info, &turned, controls);
 }
