@@ -10,21 +10,26 @@ pub(crate) struct Lamp {
     pub(crate) section: &'static str,
     /// The parameter that is least while the part is off.
     pub(crate) param: Param,
-    /// Its value for a part that has not been on before.
+    /// Another parameter that must be least as well.
+    pub(crate) also: Option<Param>,
+    /// The value of the first for a part that has not been on before.
     pub(crate) on: f32,
     /// What the part does.
     pub(crate) help: &'static str,
 }
 
 const fn lamp(section: &'static str, param: Param, on: f32, help: &'static str) -> Lamp {
-    Lamp { section, param, on, help }
+    Lamp { section, param, also: None, on, help }
 }
 
 /// What moves the body.
 pub(crate) const MOVERS: [Lamp; 6] = [
     lamp("Mallet", Param::MalletLevel, 0.0, "A mallet strikes it."),
     lamp("Pluck", Param::PluckLevel, 0.0, "A finger or a plectrum pulls it aside and lets go."),
-    lamp("Noise", Param::NoiseLevel, -6.0, "A burst of noise: a brush, a scrape, breath."),
+    Lamp {
+        also: Some(Param::NoiseHeld),
+        ..lamp("Noise", Param::NoiseLevel, -6.0, "A burst of noise, or noise that lasts: a brush, a scrape, breath.")
+    },
     lamp("Bow", Param::BowLevel, 0.0, "A bow, for as long as a key is held."),
     lamp("Breath", Param::BreathLevel, -18.0, "Breath through a reed or lips, for as long as a key is held."),
     lamp("Input", Param::InputLevel, 0.0, "Incoming sound drives it, for as long as a key is held."),
@@ -39,7 +44,7 @@ const OTHERS: [Lamp; 5] = [
     lamp("Space", Param::Space, 1.0, "A plate, a spring tank or a room that reverberates."),
 ];
 
-/// The lamp of a section, if it has one.
+/// The lamp of a preset's section, if it has one. The knobs of a kit move the levels of its sounds and say nothing of them.
 pub(crate) fn of(section: &str) -> Option<&'static Lamp> {
     const ALL: [&[Lamp]; 2] = [&MOVERS, &OTHERS];
     ALL.into_iter().flatten().find(|lamp| lamp.section == section)
@@ -48,7 +53,24 @@ pub(crate) fn of(section: &str) -> Option<&'static Lamp> {
 impl Lamp {
     /// Whether the part is on.
     pub(crate) fn is_on(&self, controls: &Controls) -> bool {
-        controls.value(self.param.info()) > self.param.info().min
+        self.params().any(|param| controls.value(param.info()) > param.info().min)
+    }
+
+    /// The parameters that are least while the part is off.
+    pub(crate) fn params(&self) -> impl Iterator<Item = Param> {
+        std::iter::once(self.param).chain(self.also)
+    }
+
+    /// Values that switch the part off, if it is on, and otherwise on, as it was when it was switched off.
+    pub(crate) fn switched(&self, controls: &mut Controls) -> Vec<(Param, f32)> {
+        let part = (controls.params.name(), self.section);
+        if self.is_on(controls) {
+            let before = self.params().map(|param| (param, controls.value(param.info()))).collect();
+            controls.interaction.switched_off.insert(part, before);
+            self.params().map(|param| (param, param.info().min)).collect()
+        } else {
+            controls.interaction.switched_off.remove(&part).unwrap_or_else(|| vec![(self.param, self.on)])
+        }
     }
 
     /// Shows the lamp in the middle of the place where it can be clicked.
@@ -57,7 +79,9 @@ impl Lamp {
         let response = ui.interact(rect, Id::unique(("lamp", self.section)), Sense::click());
         response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_on, self.section));
         if response.clicked() {
-            self.switch(controls);
+            for (param, value) in self.switched(controls) {
+                controls.set(param.info(), value);
+            }
         }
         if is_on {
             ui.painter().circle_filled(rect.center(), 3.5, palette.accent);
@@ -68,19 +92,5 @@ impl Lamp {
             ui.painter().circle_stroke(rect.center(), 6.0, Stroke::new(1.5, palette.text));
         }
         response
-    }
-
-    fn switch(&self, controls: &mut Controls) {
-        let info = self.param.info();
-        // Another sound's level would not suit this one.
-        let part = (controls.params.name(), self.section);
-        let value = if self.is_on(controls) {
-            let before = controls.value(info);
-            controls.interaction.switched_off.insert(part, before);
-            info.min
-        } else {
-            controls.interaction.switched_off.remove(&part).unwrap_or(self.on)
-        };
-        controls.set(info, value);
     }
 }

@@ -13,7 +13,7 @@ use history::History;
 use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
 use sprung::engine::SoundingNote;
-use sprung::params::{PARAMS, ParamInfo};
+use sprung::params::{PARAMS, Param, ParamInfo};
 use std::collections::HashMap;
 use std::time::Duration;
 
@@ -59,8 +59,8 @@ pub(super) struct Interaction {
     pub(super) binding: Option<Binding>,
     /// The parameter that the user has moved last, until somebody has looked.
     pub(super) touched: Option<usize>,
-    /// The values of parts that have been switched off, by sound and section.
-    pub(super) switched_off: HashMap<(String, &'static str), f32>,
+    /// The values that parts had when they were switched off, by sound and section.
+    pub(super) switched_off: HashMap<(String, &'static str), Vec<(Param, f32)>>,
 }
 
 /// The text of the status line about the thing under the pointer.

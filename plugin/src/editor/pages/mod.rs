@@ -68,6 +68,7 @@ impl Pages {
     /// Ends the user's action, and releases the held keys.
     pub(super) fn leave(&mut self, controls: &mut Controls) {
         self.body.leave(controls);
+        controls.interaction.touched = None;
         self.release(controls.params.link());
     }
 
@@ -87,12 +88,15 @@ impl Pages {
         (down, voices): (u128, u32),
         controls: &mut Controls,
     ) -> Option<Request> {
-        self.follow(controls);
-        let request = self.path(ui, layout.path, controls);
+        let is_preset = shown.preset().is_some();
+        if is_preset {
+            self.follow(controls);
+        }
+        let request = self.path(ui, layout.path, is_preset, controls);
         let (rect, (part, page)) = (layout.sections, self.part);
         match part {
             "Routes" => {
-                routes::list::show(ui, rect, shown.patch(), shown.guide(), shown.preset().is_some(), controls);
+                routes::list::show(ui, rect, shown.patch(), shown.guide(), is_preset, controls);
                 request
             }
             "Model" => self.body.show(ui, rect, shown, controls).map(Request::Say).or(request),
@@ -113,7 +117,7 @@ impl Pages {
                 } else {
                     (rect, None)
                 };
-                let about = (shown.patch(), shown.guide());
+                let about = (shown.patch(), shown.guide(), is_preset);
                 sections::show(ui, left, page, (part, std::mem::take(&mut self.is_new)), about, controls);
                 if let Some(right) = right {
                     voices::show(ui.painter(), right, voices, controls);
@@ -123,17 +127,18 @@ impl Pages {
         }
     }
 
-    /// Selects the part of which a knob has been turned: it must not vanish under the hand that turns it down.
+    /// Selects the part that a knob has just switched off: it must not vanish under the hand that turns it down.
     fn follow(&mut self, controls: &mut Controls) {
         let touched = controls.interaction.touched.take().map(|index| PARAMS[index].section);
-        let here = touched.filter(|section| lamps::of(section).is_some() && sections::shows(self.part.1, section));
+        let is_off = |section: &&str| lamps::of(section).is_some_and(|lamp| !lamp.is_on(controls));
+        let here = touched.filter(|section| is_off(section) && sections::shows(self.part.1, section));
         self.part.0 = here.unwrap_or(self.part.0);
     }
 
-    fn path(&mut self, ui: &Ui, rect: Rect, controls: &mut Controls) -> Option<Request> {
+    fn path(&mut self, ui: &Ui, rect: Rect, is_preset: bool, controls: &mut Controls) -> Option<Request> {
         let is_alone = controls.host.plugin_api() == PluginApi::Standalone;
         let way = rect.with_max_x(rect.right() - HELP);
-        if let Some(part) = path::show(ui, way, self.part.0, is_alone, controls) {
+        if let Some(part) = path::show(ui, way, self.part.0, [is_preset, is_alone], controls) {
             self.leave(controls);
             (self.part, self.is_new) = (part, true);
         }

@@ -1,7 +1,7 @@
 //! The way of the sound as one picture, from the keys to the output: parts with lamps, one of which is shown below.
 
 use crate::editor::controls::{Controls, Hint};
-use crate::editor::lamps;
+use crate::editor::lamps::{self, Lamp};
 use crate::editor::theme::{GAP, RADIUS, SMALL, TEXT};
 use crate::editor::widgets::text;
 use egui::{Align2, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
@@ -37,8 +37,15 @@ pub(in crate::editor) fn names() -> impl Iterator<Item = &'static str> {
     (0..DEVICES.1).filter_map(move |page| parts().find(|part| part.1 == page)).map(|(name, _)| *name)
 }
 
-/// Shows the path, of which one part is selected. Returns the one that is clicked.
-pub(super) fn show(ui: &Ui, rect: Rect, selected: &str, is_alone: bool, controls: &mut Controls) -> Option<Part> {
+/// Shows the path of a preset, or of a kit, which has no lamps, with one part selected; devices only in the standalone
+/// program. Returns the part that is clicked.
+pub(super) fn show(
+    ui: &Ui,
+    rect: Rect,
+    selected: &str,
+    [is_preset, is_alone]: [bool; 2],
+    controls: &mut Controls,
+) -> Option<Part> {
     let palette = controls.palette;
     let mut panels = PATH.map(<[_]>::to_vec);
     if is_alone {
@@ -68,7 +75,9 @@ pub(super) fn show(ui: &Ui, rect: Rect, selected: &str, is_alone: bool, controls
                 let corner = pos2(column_left, frame.top() + 1.0 + row as f32 * ROW);
                 let item = Rect::from_min_size(corner, vec2(column_width, ROW));
                 let text = item.with_min_x(item.left() + indent(column));
-                clicked = show_part(ui, [item, text], *part, (selected, size), controls).then_some(*part).or(clicked);
+                let lamp = lamps::of(part.0).filter(|_| is_preset);
+                let is_clicked = show_part(ui, [item, text], part.0, lamp, (selected, size), controls);
+                clicked = is_clicked.then_some(*part).or(clicked);
             }
             column_left += column_width;
         }
@@ -85,11 +94,12 @@ fn indent(column: &[Part]) -> f32 {
 fn show_part(
     ui: &Ui,
     [rect, text]: [Rect; 2],
-    (name, _): Part,
+    name: &str,
+    lamp: Option<&Lamp>,
     (selected, size): (&str, f32),
     controls: &mut Controls,
 ) -> bool {
-    let (palette, lamp, is_selected) = (controls.palette, lamps::of(name), name == selected);
+    let (palette, is_selected) = (controls.palette, name == selected);
     let response = ui.interact(rect, Id::unique(("part", name)), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_selected, name));
     if is_selected {

@@ -2,7 +2,7 @@
 
 use super::curves;
 use crate::editor::controls::Controls;
-use crate::editor::lamps;
+use crate::editor::lamps::{self, Lamp};
 use crate::editor::routes::Ring;
 use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, SMALL, TITLE_HEIGHT};
 use crate::editor::widgets::choice;
@@ -11,6 +11,7 @@ use crate::editor::widgets::text::line;
 use egui::{Align2, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
 use sprung::params::{PARAMS, ParamInfo, Unit};
 use sprung::patch::Patch;
+use sprung::patch::routes::amount_param;
 use sprung::preset::Guide;
 
 /// The sections of each page, in the order in which sound is made.
@@ -53,16 +54,22 @@ fn short_name(info: &ParamInfo, guide: &Guide) -> String {
     }
 }
 
-/// Shows a page of sections of a patch: of parts that are off, only the selected one, which `is_new` if it must be scrolled to.
+/// Shows a page of sections of a patch, whole for a kit: of parts of a preset that are off, only the selected one, which `is_new` if it must be scrolled to.
 pub(super) fn show(
     ui: &mut Ui,
     rect: Rect,
     page: usize,
     (selected, is_new): (&str, bool),
-    (patch, guide): (&Patch, &Guide),
+    (patch, guide, is_preset): (&Patch, &Guide, bool),
     controls: &mut Controls,
 ) {
-    let is_on = |section: Section| lamps::of(section[0].section).is_none_or(|lamp| lamp.is_on(controls));
+    // What a route can raise is not off.
+    let is_raised = |lamp: &Lamp| {
+        let routes = patch.routes.iter().filter(|(_, route)| lamp.params().any(|param| param == route.destination));
+        routes.map(|(place, _)| controls.value(amount_param(place).info())).any(|amount| amount != 0.0)
+    };
+    let acts = |lamp: &Lamp| !is_preset || lamp.is_on(controls) || is_raised(lamp);
+    let is_on = |section: Section| lamps::of(section[0].section).is_none_or(acts);
     let shown: Vec<(Section, bool)> = sections(page)
         .map(|section| (section, is_on(section)))
         .filter(|(section, is_on)| *is_on || section[0].section == selected)

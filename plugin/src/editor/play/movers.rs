@@ -68,8 +68,8 @@ fn act_alone(mover: &Lamp, controls: &mut Controls) {
     if changed.is_empty() {
         return;
     }
-    for other in changed {
-        preset.patch.set(other.param, if is_wanted(other) { other.on } else { other.param.info().min });
+    for (param, value) in changed.into_iter().flat_map(|other| other.switched(controls)) {
+        preset.patch.set(param, value);
     }
     controls.history.begin(controls.params);
     load(state.playable, controls.params, controls.host);

@@ -1,10 +1,10 @@
 //! All routes of a sound as sentences: what moves what, and how far.
 
-use super::{Ring, name, show as show_menu, source_name};
-use crate::editor::controls::Controls;
-use crate::editor::theme::{GAP, PADDING, SMALL, TEXT, TITLE_HEIGHT};
+use super::{Ring, button, goes_both_ways, name, source_name};
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::theme::{GAP, PADDING, RADIUS, SMALL, TEXT, TITLE_HEIGHT};
 use crate::editor::widgets::{knob, text};
-use egui::{Align2, Rect, ScrollArea, Sense, Ui, UiBuilder, vec2};
+use egui::{Align2, Rect, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, vec2};
 use sprung::patch::Patch;
 use sprung::patch::routes::{MAX_ROUTES, Response, Route, Source, amount_param};
 use sprung::preset::Guide;
@@ -12,15 +12,17 @@ use sprung::preset::Guide;
 /// Height of a sentence.
 const ROW: f32 = 24.0;
 /// Least width of a sentence with its bar and value.
-const LEAST: f32 = 400.0;
-const BAR: f32 = 130.0;
+const LEAST: f32 = 300.0;
+/// Width of a bar, as a share of the width of all.
+const BAR: f32 = 0.25;
 const VALUE: f32 = 52.0;
 
 /// What a source does to its destination.
 fn verb(route: &Route, amount: f32) -> &'static str {
     match route.source {
+        _ if amount == 0.0 => "leaves",
         Source::Key => "tilts",
-        source if source.is_bipolar() => "sways",
+        _ if goes_both_ways(route) => "sways",
         _ if amount < 0.0 => "lowers",
         _ => "raises",
     }
@@ -29,8 +31,10 @@ fn verb(route: &Route, amount: f32) -> &'static str {
 /// What stands behind the destination: the second source, and the curve.
 fn details(route: &Route, guide: &Guide) -> String {
     let scale = route.scale.map_or(String::new(), |scale| format!(" times {}", source_name(scale, guide)));
-    let curve = if route.response == Response::ALL[0] { "" } else { route.response.id() };
-    if curve.is_empty() { scale } else { format!("{scale}, {curve}") }
+    match route.response {
+        Response::Linear => scale,
+        curve => format!("{scale}, {}", curve.id()),
+    }
 }
 
 /// Shows all places of routes. Only those of a preset `is_editable`: a kit's sounds have routes of their own.
@@ -60,8 +64,20 @@ pub(in crate::editor) fn show(
             let corner = area.min + vec2(column as f32 * (width + 2.0 * GAP), row as f32 * ROW);
             let cell = Rect::from_min_size(corner, vec2(width, ROW - 2.0));
             let value = cell.with_min_x(cell.right() - VALUE);
-            let bar = cell.with_max_x(value.left()).with_min_x(value.left() - BAR);
+            let bar = cell.with_max_x(value.left()).with_min_x(value.left() - (BAR * width).round());
             let sentence = cell.with_max_x(bar.left() - GAP);
+            if is_editable {
+                let response = button(ui, sentence, place, &patch.routes, guide, controls);
+                if response.hovered() {
+                    ui.painter().rect_filled(sentence.expand2(vec2(4.0, 0.0)), RADIUS, palette.raised);
+                    let name = name(place, &patch.routes, guide);
+                    *controls.hint = Hint::new(name, "Click: source, destination, multiplier and response.");
+                }
+                if response.has_focus() {
+                    let edge = Stroke::new(1.5, palette.text);
+                    ui.painter().rect_stroke(sentence.expand2(vec2(4.0, 0.0)), RADIUS, edge, StrokeKind::Inside);
+                }
+            }
             match patch.routes.get(place) {
                 None => {
                     line(ui, sentence, &name(place, &patch.routes, guide), SMALL, palette.muted);
@@ -81,9 +97,6 @@ pub(in crate::editor) fn show(
                     let ring = Ring::of(info, &patch.routes, controls);
                     knob::show_bar(ui, [bar, value], info, &ring, controls);
                 }
-            }
-            if is_editable {
-                show_menu(ui, sentence, place, &patch.routes, guide, controls);
             }
         }
     });

@@ -30,6 +30,11 @@ pub(super) fn name(place: usize, routes: &Routes, guide: &Guide) -> String {
     format!("{}{scale} › {}", source_name(source, guide), destination.info().name)
 }
 
+/// Whether a route moves its parameter to both sides.
+fn goes_both_ways(route: &Route) -> bool {
+    route.source.is_bipolar() || route.scale.is_some_and(Source::is_bipolar)
+}
+
 /// The modulation of a parameter, as a knob shows it.
 #[derive(Default)]
 pub(super) struct Ring {
@@ -44,8 +49,7 @@ impl Ring {
         let position = controls.position(info);
         let range = |(place, route): (usize, Route)| {
             let amount = controls.value(amount_param(place).info()) / 100.0;
-            let goes_back = route.source.is_bipolar() || route.scale.is_some_and(Source::is_bipolar);
-            let from = if goes_back { position - amount } else { position };
+            let from = if goes_both_ways(&route) { position - amount } else { position };
             [from, position + amount].map(|end| end.clamp(0.0, 1.0))
         };
         let these = routes.iter().filter(|(_, route)| route.destination == info.param);
@@ -55,8 +59,15 @@ impl Ring {
     }
 }
 
-/// Shows the name of a route as a button that opens its menu.
-pub(super) fn show(ui: &Ui, rect: Rect, place: usize, routes: &Routes, guide: &Guide, controls: &mut Controls) {
+/// Makes the place of a route's sentence a button that opens its menu.
+fn button(
+    ui: &Ui,
+    rect: Rect,
+    place: usize,
+    routes: &Routes,
+    guide: &Guide,
+    controls: &mut Controls,
+) -> egui::Response {
     let response = ui.interact(rect, Id::unique(("route", place)), Sense::click());
     let label = format!("Route {}: {}", place + 1, name(place, routes, guide));
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
@@ -94,6 +105,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, place: usize, routes: &Routes, guide: &G
             ui.close();
         }
     });
+    response
 }
 
 /// The part of a knob's menu that adds a route to its parameter from a chosen source.

@@ -79,11 +79,14 @@ fn a_part_that_is_off_is_shown_only_while_selected_and_comes_back_as_it_was() {
     band.click(Role::CheckBox, "Noise");
     assert_eq!(band.value(Param::NoiseLevel), Param::NoiseLevel.info().min);
     assert!(is_shown(&band, "Noise colour"), "it is selected");
-    band.open("Bow");
-    assert!(!is_shown(&band, "Noise colour") && is_shown(&band, "Mallet mass") && is_shown(&band, "Bow force"));
     band.click(Role::CheckBox, "Noise");
-    assert!(band.value(Param::NoiseLevel) == before && is_shown(&band, "Noise colour"));
+    assert_eq!(band.value(Param::NoiseLevel), before);
+    band.open("Bow");
+    assert!(is_shown(&band, "Noise colour") && is_shown(&band, "Mallet mass") && is_shown(&band, "Bow force"));
+    band.open("Mallet");
+    assert!(!is_shown(&band, "Bow force"));
     // What is turned down to nothing stays under the hand.
+    band.open("Bow");
     let knob = band.stage.harness.get_by_role_and_label(Role::Slider, "Mallet level").rect().center();
     band.press(knob, true);
     band.event(egui::Event::PointerMoved(knob + vec2(0.0, 400.0)));
@@ -97,6 +100,27 @@ fn a_part_that_is_off_is_shown_only_while_selected_and_comes_back_as_it_was() {
         band.undo();
     }
     assert!(band.value(Param::NoiseLevel) == before && band.value(Param::Drive) == 0.0);
+}
+
+#[test]
+fn a_kit_has_no_lamps_and_all_knobs() {
+    let mut band = Band::new("Acoustic Kit", SIZE, Theme::Dark);
+    band.open("Pluck");
+    let is_shown = |role, name| band.stage.harness.query_by_role_and_label(role, name).is_some();
+    assert!(is_shown(Role::Slider, "Pluck width") && is_shown(Role::Slider, "Bow force"));
+    assert!(!is_shown(Role::CheckBox, "Pluck"));
+}
+
+#[test]
+fn held_noise_is_noise() {
+    let mut band = Band::new("Piccolo", SIZE, Theme::Dark);
+    let levels = |band: &Band| [Param::NoiseLevel, Param::NoiseHeld].map(|param| band.value(param));
+    let (before, least) = (levels(&band), [Param::NoiseLevel, Param::NoiseHeld].map(|param| param.info().min));
+    assert!(before[1] > least[1]);
+    band.click(Role::CheckBox, "Noise");
+    assert_eq!(levels(&band), least);
+    band.click(Role::CheckBox, "Noise");
+    assert_eq!(levels(&band), before);
 }
 
 #[test]

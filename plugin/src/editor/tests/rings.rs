@@ -94,6 +94,13 @@ fn an_oscillator_moves_the_mark_to_and_fro_while_the_note_sounds() {
 }
 
 #[test]
+fn a_part_that_a_route_can_raise_is_not_off() {
+    let band = band(SIZE, Theme::Dark, &[(Source::Wheel, Param::BowLevel, 50.0)]);
+    let knob = |name| band.stage.harness.query_by_role_and_label(egui::Role::Slider, name);
+    assert!(knob("Bow force").is_some() && knob("Pluck width").is_none());
+}
+
+#[test]
 fn pictures_of_rings_are_as_accepted() {
     let routes = [
         (Source::Velocity, Param::MalletHardness, 60.0),

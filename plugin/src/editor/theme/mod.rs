@@ -237,7 +237,7 @@ pub(super) const STATUS_HEIGHT: f32 = 18.0;
 pub(super) const KNOB: f32 = 34.0;
 /// Height of a knob with its name and value.
 pub(super) const CELL_HEIGHT: f32 = 66.0;
-/// Smallest and largest width of a knob's cell. All exciters just fit into the window.
+/// Smallest and largest width of a knob's cell.
 pub(super) const CELL_WIDTH: [f32; 2] = [47.0, 74.0];
 
 /// Sizes of text.

@@ -280,6 +280,7 @@ impl Window {
         let loads = self.params.loads();
         if std::mem::replace(&mut self.loads, loads) != loads {
             (self.history, self.other, self.is_b) = (History::default(), None, false);
+            self.interaction.switched_off.clear();
             self.message.clear();
         }
     }

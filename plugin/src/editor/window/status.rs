@@ -3,7 +3,7 @@
 use crate::editor::controls::Hint;
 use crate::editor::theme::{Palette, SMALL};
 use crate::editor::widgets::text::{line, width};
-use egui::{Align2, Id, PopupAnchor, Rect, Role, Sense, Tooltip, Ui, WidgetInfo, pos2};
+use egui::{Align2, Id, Popup, PopupAnchor, Rect, Role, Sense, Tooltip, Ui, WidgetInfo, pos2};
 use sprung::engine::Telemetry;
 use sprung::text::counted;
 use std::time::Duration;
@@ -99,11 +99,13 @@ fn show_at_pointer(ui: &Ui, Hint { title, help }: &Hint) {
     let (rested, is_down) = ui.input(|input| (input.pointer.time_since_last_movement(), input.pointer.any_down()));
     if rested < REST {
         ui.ctx().request_repaint_after(Duration::from_secs_f32(REST - rested));
-    } else if !is_down {
+    } else if !is_down && !Popup::is_any_open(ui.ctx()) && !ui.ctx().egui_wants_keyboard_input() {
         let tip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), Id::unique("hint"), PopupAnchor::Pointer);
         tip.width(WIDEST).show(|ui| {
             ui.strong(title);
-            ui.label(help);
+            if !help.is_empty() {
+                ui.label(help);
+            }
         });
     }
 }
