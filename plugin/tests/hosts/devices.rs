@@ -13,8 +13,9 @@ pcm.broken { type hw
  hint { show on
  description \"Broken\" } }
 ";
-/// Positions of the tab *Devices* and of the field *Output*.
-const TAB: [i16; 2] = [612, 344];
+/// Positions of the tab *Sound*, of *Devices*, and of the field *Output*.
+const SOUND: [i16; 2] = [158, 23];
+const TAB: [i16; 2] = [911, 309];
 const FIELD: [i16; 2] = [280, 377];
 /// Possible positions of the lines of the field's list: the column, and the rows from the first line to the last.
 const LIST: i16 = 150;
@@ -44,6 +45,7 @@ pub(crate) fn another_device_is_chosen_while_it_plays() {
     while !matches!(heard(&stderr), (playing, true) if playing.iter().any(is_alsa)) {
         let text = std::fs::read_to_string(&stderr).unwrap();
         assert!(start.elapsed() < PATIENCE, "no other device, or none that is refused: {text}");
+        click(SOUND);
         click(TAB);
         click(FIELD);
         click([LIST, lines.next().unwrap()]);

@@ -10,18 +10,20 @@ use std::time::{Duration, Instant};
 /// Where things are in a new window.
 const BROWSE: [i16; 2] = [511, 23];
 const SAVE: [i16; 2] = [566, 23];
+/// The tab *Sound*: a new window shows *Play*.
+const SOUND: [i16; 2] = [158, 23];
 const FIRST_SOUND: [i16; 2] = [266, 93];
-const MODEL_TAB: [i16; 2] = [466, 344];
+const MODEL_TAB: [i16; 2] = [427, 326];
 const MODEL: [i16; 2] = [137, 400];
 const MATERIAL: [i16; 2] = [137, 425];
-const SPACE_TAB: [i16; 2] = [336, 344];
-const SPACE: [i16; 2] = [519, 395];
-const SIZE_VALUE: [i16; 2] = [593, 430];
-const MIX_VALUE: [i16; 2] = [519, 562];
+const SPACE_TAB: [i16; 2] = [664, 326];
+const SPACE: [i16; 2] = [151, 396];
+const SIZE_VALUE: [i16; 2] = [225, 430];
+const MIX_VALUE: [i16; 2] = [151, 562];
 /// Entries of the lists that open there.
 const MARIMBA: [i16; 2] = [266, 114];
 const GLASS: [i16; 2] = [133, 141];
-const ROOM: [i16; 2] = [547, 509];
+const ROOM: [i16; 2] = [179, 510];
 /// Left, top, right and bottom of the lowest line.
 const LINE: [u32; 4] = [8, 674, 700, 692];
 /// Blue, green and red of messages.
@@ -107,14 +109,14 @@ pub(crate) fn the_first_five_minutes() {
     until(&stand, "1. a marimba is found and loaded", find("marimba"), || is(&|preset| preset.name == "Marimba"));
     let wood = now().unwrap().patch.get(Param::Decay);
     let glass = |hand: &Onlooker| {
-        for place in [MODEL_TAB, MODEL, MARIMBA, MATERIAL, GLASS] {
+        for place in [SOUND, MODEL_TAB, MODEL, MARIMBA, MATERIAL, GLASS] {
             hand.click(place);
         }
     };
     let is_glass = || is(&|preset| preset.patch.get(Param::Decay) > 2.0 * wood);
     until(&stand, "2. it is of glass", glass, is_glass);
     let room = |hand: &Onlooker| {
-        for place in [SPACE_TAB, SPACE, ROOM] {
+        for place in [SOUND, SPACE_TAB, SPACE, ROOM] {
             hand.click(place);
         }
         for (value, text) in [(SIZE_VALUE, "200 %"), (MIX_VALUE, "40 %")] {
