@@ -155,7 +155,7 @@ pub(crate) fn work() -> ExitCode {
             described(&knob).is_ok_and(|text| text == "12 %")
         });
         let choice = finds(&mut instance, COMBO_BOX, "Noise decay");
-        assert_eq!(described(&choice).unwrap(), "quadratic");
+        assert_eq!(described(&choice).unwrap(), "exponential");
         wait_until("the knob turns", || {
             instance.run_callbacks();
             instance.flush(&[]);
