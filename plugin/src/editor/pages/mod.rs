@@ -94,37 +94,33 @@ impl Pages {
         }
         let request = self.path(ui, layout.path, is_preset, controls);
         let (rect, (part, page)) = (layout.sections, self.part);
-        match part {
+        let said = match part {
             "Routes" => {
                 routes::list::show(ui, rect, shown.patch(), shown.guide(), is_preset, controls);
-                request
+                None
             }
-            "Model" => self.body.show(ui, rect, shown, controls).map(Request::Say).or(request),
+            "Model" => self.body.show(ui, rect, shown, controls),
             "Kit" => {
                 kit::show(ui, rect, &mut self.kit, shown, down, controls);
-                request
+                None
             }
             "Devices" => {
                 devices::show(ui, rect, controls);
-                request
+                None
             }
-            "Tuning" => self.tuning.show(ui, rect, shown, down, controls).map(Request::Say).or(request),
+            "Tuning" => self.tuning.show(ui, rect, shown, down, controls),
             _ => {
-                let is_voices = part == "Voices";
-                let (left, right) = if is_voices && rect.width() >= WIDE {
-                    let left = rect.left() + SECTIONS;
-                    (rect.with_max_x(left), Some(rect.with_min_x(left + GAP)))
-                } else {
-                    (rect, None)
-                };
+                let mut left = rect;
+                if part == "Voices" && rect.width() >= WIDE {
+                    left = rect.with_max_x(rect.left() + SECTIONS);
+                    voices::show(ui.painter(), rect.with_min_x(left.right() + GAP), voices, controls);
+                }
                 let about = (shown.patch(), shown.guide(), is_preset);
                 sections::show(ui, left, page, (part, std::mem::take(&mut self.is_new)), about, controls);
-                if let Some(right) = right {
-                    voices::show(ui.painter(), right, voices, controls);
-                }
-                request
+                None
             }
-        }
+        };
+        said.map(Request::Say).or(request)
     }
 
     /// Selects the part that a knob has just switched off: it must not vanish under the hand that turns it down.

@@ -30,11 +30,15 @@ const MARGIN: f32 = 4.0;
 /// Width of the place of a lamp.
 const LAMP: f32 = 16.0;
 
+#[cfg(test)]
+fn parts() -> impl Iterator<Item = Part> {
+    PATH.into_iter().flatten().copied().flatten().copied()
+}
+
 /// A part of each page, in the order of the pages.
 #[cfg(test)]
 pub(in crate::editor) fn names() -> impl Iterator<Item = &'static str> {
-    let parts = || PATH.into_iter().flatten().copied().flatten();
-    (0..DEVICES.1).filter_map(move |page| parts().find(|part| part.1 == page)).map(|(name, _)| *name)
+    (0..DEVICES.1).filter_map(|page| parts().find(|part| part.1 == page)).map(|(name, _)| name)
 }
 
 /// Shows the path of a preset, or of a kit, which has no lamps, with one part selected; devices only in the standalone
@@ -130,11 +134,10 @@ mod tests {
 
     #[test]
     fn every_lamp_is_on_the_way_and_every_part_on_the_page_of_its_section() {
-        let parts: Vec<Part> = PATH.into_iter().flatten().copied().flatten().copied().collect();
         for section in PARAMS.chunk_by(|a, b| a.section == b.section).map(|rows| rows[0].section) {
-            let part = parts.iter().find(|(name, _)| *name == section);
+            let part = parts().find(|(name, _)| *name == section);
             assert!(part.is_some() || lamps::of(section).is_none(), "{section}");
-            assert!(part.is_none_or(|(_, page)| sections::shows(*page, section)), "{section}");
+            assert!(part.is_none_or(|(_, page)| sections::shows(page, section)), "{section}");
         }
     }
 }
