@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 /// The values of their sound that voices read when a note starts and while it plays. Real-time safe once built, as long
 /// as the sounds are also held elsewhere, so that none is freed here.
+#[derive(Clone)]
 pub(crate) struct Instrument {
     /// The sound whose modes and routes are played.
     pub(crate) sound: Arc<Sound>,

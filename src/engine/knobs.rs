@@ -14,6 +14,7 @@ struct Knob {
 }
 
 /// The knobs of one sound. Real-time safe.
+#[derive(Clone)]
 pub(crate) struct Knobs {
     knobs: [Knob; PARAM_COUNT],
     /// Frames until all ramps have reached their targets.

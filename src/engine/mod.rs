@@ -17,6 +17,7 @@
 //! | `blend` | the balance of an effect between what comes in and what the synth makes of it |
 //! | `snapshot`, `telemetry`, `scope`, `atomic` | what displays read while the engine plays |
 //! | `voice_state` | a voice and its modes as they are, for labels |
+//! | `workers` | who does the work of a block: its caller, or several threads |
 
 mod atomic;
 pub mod banks;
@@ -43,6 +44,7 @@ pub mod telemetry;
 mod voice;
 pub mod voice_manager;
 pub mod voice_state;
+pub mod workers;
 mod zones;
 
 pub use blend::Blend;
@@ -57,4 +59,5 @@ pub(crate) use synth::PadGroup;
 pub use synth::Synth;
 pub use telemetry::{Telemetry, TelemetryWriter};
 pub(crate) use voice_state::{ModeState, VoiceState};
+pub use workers::Workers;
 pub(crate) use zones::Owners;

@@ -39,7 +39,7 @@ pub struct Options {
 impl Default for Options {
     /// As the command has them: 48 kHz, the seed 0, until nothing sounds.
     fn default() -> Self {
-        Self { sample_rate: 48_000, seed: 0, block: 1024, tail: Tail::Auto }
+        Self { sample_rate: 48_000, seed: 0, block: 4096, tail: Tail::Auto }
     }
 }
 

@@ -1,11 +1,11 @@
 //! The offline renderer: turns songs into samples, block by block, as fast as the machine can.
 //!
-//! **Threads.** Channels of an ensemble depend on events alone, so a caller of `Ensemble::process_by` may render them
-//! on any threads; they are added up in channel order. The renderer uses Rayon for this, in blocks of 512 frames and
-//! more, and renders the next block while the last one is measured and written. A song with one channel gains only from
-//! the latter. Single voices are not shared between cores: a tick of 16 ringing voices of 64 modes takes about 6 µs
-//! (`benches/README.md`), and giving half of them to another core would save little more than it costs.
-//! `Ensemble::process`, which the audio thread calls, uses no threads.
+//! **Threads.** Channels of an ensemble depend on events alone, and the notes of a channel depend on nothing else between two
+//! events. So whoever calls `Ensemble::process_by` may render them on any threads; voices and channels are added up in
+//! their order. The renderer uses Rayon for this, in blocks of 512 frames and more, and renders the next block while the last
+//! one is measured and written. Spaces, which come after the sum, and the limiter stay with one thread:
+//! `benches/README.md` has what two cores gain, and what more would. `Ensemble::process`, which the audio thread calls, uses no
+//! threads.
 //!
 //! **Two passes instead of a buffer.** Normalising, and writing a WAV to a pipe, need results from the end of the song
 //! at its beginning. Since rendering is deterministic, the song is rendered twice, and memory use does not grow with

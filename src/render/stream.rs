@@ -1,8 +1,8 @@
-//! Renders a job block by block, on up to as many cores as channels sound.
+//! Renders a job block by block, on as many cores as there are.
 
 use super::job::{Job, Rendered};
 use super::labels::Labels;
-use crate::engine::{Ensemble, Event, Stems};
+use crate::engine::{Ensemble, Event, Stems, Workers};
 use crate::error::Result;
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
@@ -18,7 +18,7 @@ impl Job<'_> {
     /// For each block of what comes before [`Job::from`], `sink` gets an empty one, so that it can end the work there too.
     ///
     /// Blocks of 512 frames and more are shared between the threads of the current Rayon pool (see
-    /// [`on_threads`](super::on_threads)): channels are rendered in parallel, and the next block is rendered while
+    /// [`on_threads`](super::on_threads)): channels and notes are rendered in parallel, and the next block is rendered while
     /// `sink` works on one. The samples do not depend on this, and `sink` receives the blocks in order.
     ///
     /// # Errors
@@ -94,6 +94,20 @@ impl Job<'_> {
             Ok(())
         })?;
         Ok(stream.rendered())
+    }
+}
+
+/// The threads of the current Rayon pool.
+struct Threads;
+
+impl Workers for Threads {
+    fn each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Sync) {
+        // One at a time: only few channels sound, and two of them should not wait for the same core.
+        items.par_iter_mut().with_max_len(1).for_each(&work);
+    }
+
+    fn take_notes(&self) -> bool {
+        rayon::current_num_threads() > 1
     }
 }
 
@@ -226,10 +240,7 @@ impl<'a> Stream<'a> {
         if left.len() < SHARED_FRAMES {
             self.ensemble.process_with_input(&self.events, &self.input_now, left, right);
         } else {
-            // One part at a time: only few channels sound, and two of them should not wait for the same core.
-            let each =
-                |parts: &mut [_], play: &(dyn Fn(&mut _) + Sync)| parts.par_iter_mut().with_max_len(1).for_each(play);
-            self.ensemble.process_by(each, &self.events, &self.input_now, left, right);
+            self.ensemble.process_by(&Threads, &self.events, &self.input_now, left, right);
         }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::events::{event, off, on};
 use crate::in_blocks::in_blocks;
+use crate::workers::Backwards;
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::{Mode, ModeTable, Patch};
@@ -119,7 +120,7 @@ fn channels_of_an_ensemble_have_their_own() {
     }
     let mut backwards = ensemble(1024);
     let reversed = in_blocks(&events, frames, 512, |events, left, right| {
-        backwards.process_by(|parts, play| parts.iter_mut().rev().for_each(play), events, &[], left, right);
+        backwards.process_by(&Backwards, events, &[], left, right);
     });
     assert!(whole == reversed, "the order in which parts are played");
     // The effects of a channel do not change the other channels: the mix is the sum of the channels rendered alone.

@@ -1,6 +1,7 @@
 //! Exciters in whole notes: their sum, velocity, mallet contact, random variation, bow and audio input.
 
 use crate::events::{event, off, on};
+use crate::workers::Backwards;
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
 use sprung::params::Param;
 use sprung::patch::routes::Source;
@@ -207,8 +208,7 @@ fn an_ensemble_hears_input_as_a_synth_does() {
     let alone = driven(&patch, 7, &[on(40, 60)], &input, 9600);
     let mut ensemble = Ensemble::new(RATE, 7, &patch, &[]).with_chunk(512);
     let (mut left, mut right) = (vec![0.0; 9600], vec![0.0; 9600]);
-    let each = |parts: &mut [_], play: &(dyn Fn(&mut _) + Sync)| parts.iter_mut().for_each(play);
-    ensemble.process_by(each, &[on(40, 60)], &input, &mut left, &mut right);
+    ensemble.process_by(&Backwards, &[on(40, 60)], &input, &mut left, &mut right);
     assert!(left == alone);
 }
 

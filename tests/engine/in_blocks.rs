@@ -9,7 +9,7 @@ pub(crate) fn in_blocks(
     block: usize,
     mut process: impl FnMut(&[Event], &mut [f32], &mut [f32]),
 ) -> Vec<u32> {
-    let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
+    let (mut left, mut right) = (vec![9.0; frames], vec![9.0; frames]);
     for start in (0..frames).step_by(block) {
         let end = frames.min(start + block);
         let within = |event: &&Event| (start..end).contains(&(event.frame as usize));

@@ -33,6 +33,7 @@ mod space;
 mod storm;
 mod tuning;
 mod unison;
+mod workers;
 
 /// Forbids allocation wherever a test asks for it.
 #[global_allocator]

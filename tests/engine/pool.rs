@@ -1,7 +1,8 @@
 //! The voice pool: sixteen channels that need more voices than there are, and bodies with many cells.
 
-use sprung::engine::ensemble::Part;
-use sprung::engine::{Ensemble, Event, EventKind, Synth};
+use crate::in_blocks::in_blocks;
+use crate::workers::{Backwards, TwoThreads};
+use sprung::engine::{Ensemble, Event, EventKind, Synth, Workers};
 use sprung::params::Param;
 use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use sprung::sound::Kit;
@@ -50,32 +51,8 @@ fn storm() -> Vec<Event> {
     events
 }
 
-/// Plays the parts in reverse order, or on two threads.
-fn one_by_one(parts: &mut [Part], play: &(dyn Fn(&mut Part) + Sync)) {
-    parts.iter_mut().rev().for_each(play);
-}
-
-fn two_threads(parts: &mut [Part], play: &(dyn Fn(&mut Part) + Sync)) {
-    let (first, second) = parts.split_at_mut(7);
-    std::thread::scope(|scope| {
-        scope.spawn(|| first.iter_mut().for_each(play));
-        second.iter_mut().for_each(play);
-    });
-}
-
-type Each = fn(&mut [Part], &(dyn Fn(&mut Part) + Sync));
-
-fn render(ensemble: &mut Ensemble, events: &[Event], block: usize, each: Each) -> Vec<u32> {
-    let (mut left, mut right) = (vec![9.0; FRAMES], vec![9.0; FRAMES]);
-    let mut rest = events;
-    for start in (0..FRAMES).step_by(block) {
-        let end = FRAMES.min(start + block);
-        let (now, later) = rest.split_at(rest.partition_point(|event| (event.frame as usize) < end));
-        let here: Vec<Event> = now.iter().map(|event| Event { frame: event.frame - start as u32, ..*event }).collect();
-        ensemble.process_by(each, &here, &[], &mut left[start..end], &mut right[start..end]);
-        rest = later;
-    }
-    left.into_iter().chain(right).map(f32::to_bits).collect()
+fn render(ensemble: &mut Ensemble, events: &[Event], block: usize, workers: &impl Workers) -> Vec<u32> {
+    in_blocks(events, FRAMES, block, |events, left, right| ensemble.process_by(workers, events, &[], left, right))
 }
 
 fn ensemble() -> Ensemble {
@@ -85,15 +62,18 @@ fn ensemble() -> Ensemble {
 #[test]
 fn an_exhausted_pool_gives_the_same_bits_however_frames_are_divided() {
     let events = storm();
-    let whole = render(&mut ensemble(), &events, FRAMES, one_by_one);
+    let whole = render(&mut ensemble(), &events, FRAMES, &Backwards);
     assert!(whole.iter().all(|bits| f32::from_bits(*bits).is_finite()));
     assert!(whole.iter().any(|bits| f32::from_bits(*bits).abs() > 0.1));
-    let blocks: [(usize, Each); 5] =
-        [(1, one_by_one), (7, one_by_one), (64, one_by_one), (480, two_threads), (4096, two_threads)];
-    for (block, each) in blocks {
-        let parts = render(&mut ensemble(), &events, block, each);
+    let compare = |block, parts: Vec<u32>| {
         let differs = whole.iter().zip(&parts).position(|(one, other)| one != other);
         assert_eq!(differs.map(|at| at % FRAMES), None, "blocks of {block}");
+    };
+    for block in [1, 7, 64] {
+        compare(block, render(&mut ensemble(), &events, block, &Backwards));
+    }
+    for block in [480, 4096] {
+        compare(block, render(&mut ensemble(), &events, block, &TwoThreads));
     }
 }
 
@@ -120,18 +100,18 @@ fn the_quietest_of_all_channels_give_way() {
 #[test]
 fn a_used_ensemble_plays_as_a_new_one() {
     let mut used = ensemble();
-    render(&mut used, &storm(), 480, one_by_one);
+    render(&mut used, &storm(), 480, &Backwards);
     let silence: Vec<Event> = (0..16)
         .map(|channel| Event { frame: 0, channel, kind: EventKind::Control { controller: 120, value: 0.0 } })
         .collect();
-    render(&mut used, &silence, 480, one_by_one);
+    render(&mut used, &silence, 480, &Backwards);
     assert!(used.is_silent());
     let mut fresh = Ensemble::new(RATE, 5, &patch(100), &[]);
     // The clocks of both ensembles are at a control tick, and the sound has no random part.
     (0..16).for_each(|channel| used.set_kit(channel, &Kit::of_patch(&patch(300))));
     (0..16).for_each(|channel| fresh.set_kit(channel, &Kit::of_patch(&patch(300))));
     let notes: Vec<_> = (0..30).map(|n| on(u32::from(n) * 333, n % 16, 40 + n, 0.7)).collect();
-    assert!(render(&mut used, &notes, 480, one_by_one) == render(&mut fresh, &notes, 480, one_by_one));
+    assert!(render(&mut used, &notes, 480, &Backwards) == render(&mut fresh, &notes, 480, &Backwards));
 }
 
 /// One voice of 512 modes, compared with eight synths with one cell each.

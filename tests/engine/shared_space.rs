@@ -2,6 +2,7 @@
 
 use crate::events::{off, on};
 use crate::in_blocks::in_blocks;
+use crate::workers::Backwards;
 use sprung::engine::midi::controller::REVERB_SEND;
 use sprung::engine::{Ensemble, Event, EventKind};
 use sprung::params::Param;
@@ -109,7 +110,7 @@ fn blocks_chunks_and_the_order_of_parts_make_no_difference() {
     }
     let mut ensemble = dry().with_mix(&room());
     let backwards = in_blocks(&events, 24_000, 512, |events, left, right| {
-        ensemble.process_by(|parts, play| parts.iter_mut().rev().for_each(play), events, &[], left, right);
+        ensemble.process_by(&Backwards, events, &[], left, right);
     });
     assert!(backwards.into_iter().map(f32::from_bits).eq(whole));
 }

@@ -22,7 +22,7 @@ use crate::units::gain_from_db;
 use choke::Playing;
 use lender::Lender;
 use mix_limiter::MixLimiter;
-pub use part::Part;
+use part::Part;
 use shared_space::SharedSpace;
 use std::sync::Arc;
 pub(crate) use stems::Stems;

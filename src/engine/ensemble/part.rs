@@ -2,12 +2,13 @@
 
 use super::choke::ChokeGroups;
 use super::chunk::Chunk;
-use crate::engine::synth::part as part_of;
+use crate::engine::synth::{add, part as part_of};
+use crate::engine::workers::Workers;
 use crate::engine::{Event, EventKind, Synth};
 use crate::params::Param;
 
 /// The synth of one channel and its output. Parts do not depend on each other while a chunk is played.
-pub struct Part {
+pub(super) struct Part {
     channel: usize,
     pub(super) synth: Synth,
     left: Vec<f32>,
@@ -29,7 +30,7 @@ impl Part {
     }
 
     /// Renders a chunk into the part's own buffers. `groups` are the choke groups of all parts before the chunk.
-    pub(super) fn play<'a>(&mut self, chunk: &Chunk<'a>, groups: &[ChokeGroups<'a>; 16]) {
+    pub(super) fn play<'a>(&mut self, workers: &impl Workers, chunk: &Chunk<'a>, groups: &[ChokeGroups<'a>; 16]) {
         let Self { channel, synth, is_heard, .. } = self;
         *is_heard = !synth.is_silent();
         if !*is_heard && chunk.events.is_empty() {
@@ -63,7 +64,8 @@ impl Part {
                 continue;
             }
             let at = chunk.frame(event).max(frame);
-            synth.play(part_of(chunk.input, frame, at), &mut left[frame..at], &mut right[frame..at], None);
+            let input = part_of(chunk.input, frame, at);
+            synth.play(workers, input, &mut left[frame..at], &mut right[frame..at], None);
             frame = at;
             match program {
                 Some(kit) => synth.set_kit(kit),
@@ -73,7 +75,7 @@ impl Part {
         }
         if *is_heard {
             let input = part_of(chunk.input, frame, chunk.frames);
-            synth.play(input, &mut left[frame..], &mut right[frame..], None);
+            synth.play(workers, input, &mut left[frame..], &mut right[frame..], None);
         } else {
             synth.rest(chunk.frames - frame);
         }
@@ -91,8 +93,4 @@ impl Part {
             add(right, &self.right);
         }
     }
-}
-
-fn add(sum: &mut [f32], part: &[f32]) {
-    sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
 }

@@ -3,9 +3,9 @@
 use super::Ensemble;
 use super::choke::Playing;
 use super::chunk::Chunk;
-use super::part::Part;
 use crate::engine::Event;
 use crate::engine::synth::{part, silence_inaudible};
+use crate::engine::workers::{Alone, Workers};
 use crate::engine::zones::Owners;
 
 /// The end of a chunk, and its reason.
@@ -49,15 +49,14 @@ impl Ensemble {
     /// As [`Ensemble::process`], with the incoming sound `input`, as in
     /// [`Synth::process_with_input`](crate::engine::Synth::process_with_input). Real-time safe.
     pub(crate) fn process_with_input(&mut self, events: &[Event], input: &[f32], left: &mut [f32], right: &mut [f32]) {
-        self.process_by(|parts, play| parts.iter_mut().for_each(play), events, input, left, right);
+        self.process_by(&Alone, events, input, left, right);
     }
 
-    /// As [`Ensemble::process`], with the incoming sound `input`, but `each` runs the parts: it must call the function that it
-    /// receives once with every part, in any order and on any threads, since no part depends on another. The output is bit for
-    /// bit the same. As real-time safe as `each` is.
+    /// As [`Ensemble::process`], with the incoming sound `input`, but `workers` do the work: parts, and notes of a part, do not depend
+    /// on each other. The output is bit for bit the same. As real-time safe as `workers` are.
     pub fn process_by(
         &mut self,
-        each: impl Fn(&mut [Part], &(dyn Fn(&mut Part) + Sync)),
+        workers: &impl Workers,
         mut events: &[Event],
         input: &[f32],
         left: &mut [f32],
@@ -79,7 +78,7 @@ impl Ensemble {
                 programs: &self.programs,
             };
             let groups = self.playing.each_ref().map(Playing::choke_groups);
-            each(&mut self.parts, &|part| part.play(&chunk, &groups));
+            workers.each(&mut self.parts, |part| part.play(workers, &chunk, &groups));
             let is_heard = self.parts.iter().any(|part| part.is_heard);
             if !now.is_empty() {
                 self.playing.iter_mut().zip(&self.parts).for_each(|(playing, part)| playing.follow(&part.synth));

@@ -7,6 +7,7 @@ use crate::engine::zones::{MEMBER_BEND_RANGE, Zones};
 use crate::params::PlayMode;
 
 /// The controllers of all channels, and the MPE zones. Real-time safe.
+#[derive(Clone)]
 pub(super) struct Channels {
     channels: [Channel; 16],
     zones: Zones,

@@ -4,6 +4,7 @@ mod channels;
 mod controllers;
 mod events;
 mod instruments;
+mod notes_apart;
 mod outputs;
 mod pads;
 mod process;
@@ -26,7 +27,7 @@ pub(crate) use pads::PadGroup;
 use pads::PadSums;
 use std::sync::Arc;
 
-pub(super) use process::{flush, part, silence_inaudible};
+pub(super) use process::{add, flush, part, silence_inaudible};
 
 /// Sample rates that the engine runs at, in Hz.
 pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 1_000..=768_000;

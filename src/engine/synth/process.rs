@@ -7,7 +7,25 @@
 use super::{Outputs, Synth};
 use crate::dsp::CONTROL_FRAMES;
 use crate::engine::event::Event;
+use crate::engine::workers::{Alone, Workers};
 use crate::params::{self, Param};
+
+/// The next frames, up to the next control tick: within them, all that moves is on a ramp.
+pub(super) struct Stretch {
+    /// Whether it starts with a control tick.
+    pub(super) is_tick: bool,
+    /// Frames to the next control tick.
+    pub(super) to_tick: usize,
+    pub(super) frames: usize,
+}
+
+impl Stretch {
+    /// The stretch from frame `clock` on, if `frames` frames are wanted.
+    pub(super) fn new(clock: u64, frames: usize) -> Self {
+        let to_tick = CONTROL_FRAMES - (clock % CONTROL_FRAMES as u64) as usize;
+        Self { is_tick: to_tick == CONTROL_FRAMES, to_tick, frames: frames.min(to_tick) }
+    }
+}
 
 impl Synth {
     /// Renders the next frames and overwrites the slices: as many frames as the shorter one has (any number; they are
@@ -63,7 +81,7 @@ impl Synth {
     }
 
     fn play_limited(&mut self, input: &[f32], left: &mut [f32], right: &mut [f32], mut outputs: Option<Outputs<'_>>) {
-        let is_heard = self.play(input, left, right, outputs.as_mut());
+        let is_heard = self.play(&Alone, input, left, right, outputs.as_mut());
         if let Some(outputs) = &mut outputs {
             outputs.each_used(silence_inaudible);
         }
@@ -75,9 +93,10 @@ impl Synth {
     }
 
     /// Renders frames without events and without the limiter, and overwrites the slices. Returns whether they may
-    /// contain sound. `input` is the incoming sound; `outputs`, if any, are silent.
+    /// contain sound. `input` is the incoming sound; `outputs`, if any, are silent. As real-time safe as `workers` are.
     pub(in crate::engine) fn play(
         &mut self,
+        workers: &impl Workers,
         input: &[f32],
         left: &mut [f32],
         right: &mut [f32],
@@ -90,7 +109,11 @@ impl Synth {
             self.rest(left.len());
             return false;
         }
-        self.render(input, left, right, outputs.as_deref_mut());
+        if workers.take_notes() && outputs.is_none() && self.has_notes_to_share(left.len()) {
+            self.render_apart(workers, input, left, right);
+        } else {
+            self.render(input, left, right, outputs.as_deref_mut());
+        }
         // The effects hear all notes.
         let mut elsewhere = outputs.filter(|_| self.space.is_on());
         if let Some(outputs) = &mut elsewhere {
@@ -120,8 +143,7 @@ impl Synth {
                 self.needs_control = false;
                 return self.pass(frames - frame);
             }
-            let to_tick = CONTROL_FRAMES - (self.clock % CONTROL_FRAMES as u64) as usize;
-            let is_tick = to_tick == CONTROL_FRAMES;
+            let Stretch { is_tick, to_tick, frames: now } = Stretch::new(self.clock, frames - frame);
             if is_tick {
                 self.manager.active().for_each(|(_, voice)| voice.settle());
                 self.manager.free_finished();
@@ -129,7 +151,7 @@ impl Synth {
             if is_tick || self.needs_control {
                 self.control_tick(to_tick);
             }
-            let end = frames.min(frame + to_tick);
+            let end = frame + now;
             for (note, voice) in self.manager.active() {
                 let (input, left, right) = (part(input, frame, end), &mut left[frame..end], &mut right[frame..end]);
                 let own = outputs.as_deref_mut().and_then(|outputs| outputs.of(note.output, frame..end));
@@ -139,7 +161,7 @@ impl Synth {
                     Some(pads) => pads.render(note, voice, input, [left, right]),
                 }
             }
-            self.pass(end - frame);
+            self.pass(now);
             frame = end;
         }
     }
@@ -156,7 +178,7 @@ impl Synth {
     }
 
     /// Advances everything except the voices and the effects by `frames` frames.
-    fn pass(&mut self, frames: usize) {
+    pub(super) fn pass(&mut self, frames: usize) {
         self.clock += frames as u64;
         self.instruments.advance(frames as u32);
         self.channels.advance(frames as u32);
@@ -193,6 +215,11 @@ const INAUDIBLE: f32 = 1e-10;
 pub(in crate::engine) fn silence_inaudible(left: &mut [f32], right: &mut [f32]) {
     let silence = |sample: &mut f32| *sample = if sample.abs() < INAUDIBLE { 0.0 } else { *sample };
     left.iter_mut().chain(right).for_each(silence);
+}
+
+/// Adds frames to a sum.
+pub(in crate::engine) fn add(sum: &mut [f32], part: &[f32]) {
+    sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
 }
 
 /// Replaces subnormal numbers in both slices.

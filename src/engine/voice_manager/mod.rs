@@ -20,7 +20,7 @@ use pedals::Pedals;
 pub(crate) use pool::VoicePool;
 pub(crate) use room::{has_room, make_room};
 pub(crate) use slot::MAX_UNISON;
-use slot::Slot;
+pub(crate) use slot::Slot;
 pub use slots::MAX_VOICES;
 use slots::Slots;
 pub use voice::{Unison, Voice};
@@ -102,6 +102,16 @@ impl<V: Voice> VoiceManager<V> {
         self.slots.in_use_mut().iter_mut().flat_map(Slot::voices_mut)
     }
 
+    /// The notes that play or fade, each with its place, in the order of [`VoiceManager::active`].
+    pub(crate) fn notes_mut(&mut self) -> impl Iterator<Item = (usize, &mut Slot<V>)> {
+        self.slots.in_use_mut().iter_mut().enumerate().filter(|(_, slot)| !slot.is_free())
+    }
+
+    /// How many notes play or fade.
+    pub(crate) fn sounding_notes(&self) -> usize {
+        self.slots.in_use().iter().filter(|slot| !slot.is_free()).count()
+    }
+
     /// The voices of a key's notes on a channel that sound and do not fade out, each with its note.
     pub(crate) fn sounding_on(&mut self, channel: u8, key: u8) -> impl Iterator<Item = (&Note, &mut V)> {
         let notes = Notes::on(channel, key);
@@ -147,6 +157,12 @@ impl<V: Voice> VoiceManager<V> {
                 self.free(index);
             }
         }
+        self.slots.shrink();
+    }
+
+    /// Frees the voices of notes that are over, by their places.
+    pub(crate) fn end(&mut self, places: impl Iterator<Item = usize>) {
+        places.for_each(|place| self.free(place));
         self.slots.shrink();
     }
 

@@ -17,11 +17,11 @@ pub(super) enum State {
     Fading,
 }
 
-pub(super) struct Slot<V> {
+pub(crate) struct Slot<V> {
     voices: Vec<Box<V>>,
     /// Number of cells of all its voices together.
     cells: usize,
-    pub(super) note: Note,
+    pub(crate) note: Note,
     pub(super) state: State,
     pub(super) key_down: bool,
     pub(super) sostenuto: bool,
@@ -59,12 +59,12 @@ impl<V: Voice> Slot<V> {
         Footprint { voices: self.voices.len(), cells: self.cells }
     }
 
-    pub(super) fn voices(&self) -> impl Iterator<Item = &V> {
+    pub(crate) fn voices(&self) -> impl Iterator<Item = &V> {
         self.voices.iter().map(|voice| &**voice)
     }
 
     /// The voices, each with the note.
-    pub(super) fn voices_mut(&mut self) -> impl Iterator<Item = (&Note, &mut V)> {
+    pub(crate) fn voices_mut(&mut self) -> impl Iterator<Item = (&Note, &mut V)> {
         let Self { note, voices, .. } = self;
         voices.iter_mut().map(|voice| (&*note, &mut **voice))
     }
@@ -136,7 +136,7 @@ impl<V: Voice> Slot<V> {
     }
 
     /// Whether all voices are silent.
-    pub(super) fn is_over(&self) -> bool {
+    pub(crate) fn is_over(&self) -> bool {
         self.voices().all(V::is_over)
     }
 
