@@ -99,6 +99,12 @@ impl Head {
         self.carry = [[0.0; TICK]; 2];
     }
 
+    /// Sets the response to none.
+    pub(super) fn forget(&mut self) {
+        self.near = [[0.0; SIZE]; 2];
+        self.spectra.fill(0.0);
+    }
+
     /// Sets the response, in two parts of the same length.
     pub(super) fn set(&mut self, instructions: Instructions, parts: &[Pair; 2], past: &mut Past) {
         let half = parts[0][0].len();

@@ -74,6 +74,7 @@ impl Resonator {
     pub fn new(modes: &ModeSet, decay: Decay, sample_rate: f64) -> Self {
         let mut body = Self::with_room(modes.len(), decay, sample_rate);
         body.load(modes);
+        body.prepare();
         body
     }
 
@@ -106,13 +107,16 @@ impl Resonator {
         }
     }
 
-    /// Loads other modes, at rest and at the same pitch. Real-time safe if there is room for as many.
+    /// Loads other modes, at rest and at the same pitch. Unless [`Resonator::prepare`] follows, the first block is silent: the masses
+    /// get their coefficients in it, slice by slice. Real-time safe if there is room for as many.
     pub(super) fn load(&mut self, modes: &ModeSet) {
         self.reset();
         self.tail.load(modes, self.sample_rate);
         self.bands.load(modes);
+        self.heads[0].forget();
         self.given = None;
         self.change();
+        self.gains = [self.noise_gain(); 2];
     }
 
     /// Sets the ratio of all frequencies to those of the body's modes. The masses have it from the next block but one on.

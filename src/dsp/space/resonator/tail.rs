@@ -110,7 +110,12 @@ impl Tail {
         self.done = end;
         if let Some(tuning) = self.next {
             self.layout.hand_over(&self.layout.groups[groups.start..live], &mut self.held);
-            let ready = if part == parts { tuning.heard } else { self.layout.covered_by(end) };
+            // Masses at rest have nothing to hand over.
+            let ready = match self.live {
+                0 => tuning.heard * part / parts,
+                _ if part == parts => tuning.heard,
+                _ => self.layout.covered_by(end),
+            };
             let first = self.next_layout.groups.len();
             while self.next_layout.add_group(self.instructions, &self.modes, &tuning, ready) {}
             self.begin_groups(first);

@@ -105,8 +105,7 @@ impl ModalReverb {
         self.levels = levels;
         if self.state == State::Off && levels[1] > 0.0 {
             // The dry signal may sound now.
-            self.wake();
-            self.fade_in();
+            self.begin();
         } else if self.state == State::Asleep {
             return self.jump_to_levels();
         }
@@ -127,6 +126,13 @@ impl ModalReverb {
     fn wake(&mut self) {
         (self.state, self.ticks) = (State::Awake, Ticks::default());
         self.body.prepare();
+    }
+
+    /// Begins to play a body at rest during a sound, which fades in. It is prepared in its first block.
+    fn begin(&mut self) {
+        (self.state, self.ticks) = (State::Awake, Ticks::default());
+        self.drive.jump(0.0);
+        self.drive.set(1.0);
     }
 
     /// Control ticks of a block of the body, at whose beginning its pitch moves.
@@ -213,11 +219,6 @@ impl ModalReverb {
             self.pitch.jump(self.pitch.target());
             self.body.tune(self.pitch.target().into());
         }
-    }
-
-    fn fade_in(&mut self) {
-        self.drive.jump(0.0);
-        self.drive.set(1.0);
     }
 
     fn move_levels(&mut self) {

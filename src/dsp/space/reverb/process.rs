@@ -93,8 +93,7 @@ impl ModalReverb {
         if self.next_body.is_some() && self.wet.rests_at(0.0) {
             self.line.clear();
             self.finish();
-            self.wake();
-            self.fade_in();
+            self.begin();
         }
         if self.pitch.is_moving() && self.ticks.is_due_every(self.block_ticks()) {
             self.pitch.advance(self.body.block_frames());
