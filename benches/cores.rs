@@ -28,18 +28,23 @@ struct Timed(Mutex<Times>);
 
 #[derive(Default)]
 struct Times {
-    /// The stages of each channel in the chunk at hand.
-    channels: Vec<Vec<Stage>>,
+    /// The stages of each channel, chunk by chunk.
+    chunks: Vec<Vec<Vec<Stage>>>,
     /// When the work of a channel went on, if one is played.
     since: Option<Instant>,
 }
 
 impl Times {
+    /// The channels of the chunk at hand.
+    fn channels(&mut self) -> &mut Vec<Vec<Stage>> {
+        self.chunks.last_mut().expect("a chunk has begun")
+    }
+
     /// Ends the stage at hand, which one thread did alone.
     fn end_stage(&mut self) {
-        let (since, stages) = (self.since.take(), self.channels.last_mut());
-        if let (Some(since), Some(stages)) = (since, stages) {
-            stages.push(vec![since.elapsed().as_secs_f64()]);
+        if let Some(since) = self.since.take() {
+            let seconds = since.elapsed().as_secs_f64();
+            self.channels().last_mut().expect("a channel has begun").push(vec![seconds]);
         }
     }
 }
@@ -56,12 +61,13 @@ impl Workers for Timed {
             };
             let notes = items.iter_mut().map(time).collect();
             let mut times = self.0.lock().unwrap();
-            times.channels.last_mut().unwrap().push(notes);
+            times.channels().last_mut().unwrap().push(notes);
             times.since = Some(Instant::now());
         } else {
+            self.0.lock().unwrap().chunks.push(Vec::new());
             for item in items {
                 let mut times = self.0.lock().unwrap();
-                times.channels.push(Vec::new());
+                times.channels().push(Vec::new());
                 times.since = Some(Instant::now());
                 drop(times);
                 work(item);
@@ -70,7 +76,7 @@ impl Workers for Timed {
         }
     }
 
-    fn take_notes(&self) -> bool {
+    fn shares_notes(&self) -> bool {
         true
     }
 }
@@ -113,9 +119,11 @@ fn simulated(song: &Song) -> [f64; CORES.len()] {
             let begin = Instant::now();
             ensemble.process_by(&timed, &events, &[], &mut left, &mut right);
             let whole = begin.elapsed().as_secs_f64();
-            let channels = timed.0.into_inner().unwrap().channels;
-            let alone = whole - channels.iter().flatten().flatten().sum::<f64>();
-            seconds.iter_mut().zip(CORES).for_each(|(sum, cores)| *sum += alone + scheduled(&channels, cores));
+            let chunks = timed.0.into_inner().unwrap().chunks;
+            let alone = whole - chunks.iter().flatten().flatten().flatten().sum::<f64>();
+            for (sum, cores) in seconds.iter_mut().zip(CORES) {
+                *sum += alone + chunks.iter().map(|channels| scheduled(channels, cores)).sum::<f64>();
+            }
             rest = later;
         }
         least = std::array::from_fn(|index| least[index].min(seconds[index]));

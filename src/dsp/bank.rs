@@ -84,6 +84,16 @@ impl Bank {
         if let Self::Exact(bank) = self { bank.push(m) } else { 0.0 }
     }
 
+    /// See [`ModeBank::is_transposed`].
+    pub(crate) fn is_transposed(&self) -> bool {
+        if let Self::Exact(bank) = self { bank.is_transposed() } else { false }
+    }
+
+    /// See [`ModeBank::pitch`]; none with the original formulas.
+    pub(crate) fn pitch(&self) -> Option<f64> {
+        if let Self::Exact(bank) = self { bank.pitch() } else { None }
+    }
+
     /// See [`ModeBank::set_touched`].
     pub(crate) fn set_touched(&mut self, m: usize, push: f64, weight: f64) -> [f64; 2] {
         if let Self::Exact(bank) = self { bank.set_touched(m, push, weight) } else { [0.0; 2] }

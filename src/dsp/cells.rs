@@ -175,6 +175,16 @@ impl Cells {
         self.iter_mut().for_each(|cell| cell.bank.jump_to(ratio));
     }
 
+    /// See [`super::ModeBank::is_transposed`].
+    pub(crate) fn is_transposed(&self) -> bool {
+        self.cells[0].as_ref().is_some_and(|cell| cell.bank.is_transposed())
+    }
+
+    /// See [`super::ModeBank::pitch`].
+    pub(crate) fn pitch(&self) -> Option<f64> {
+        self.cells[0].as_ref()?.bank.pitch()
+    }
+
     /// Sets what the first [`MAX_MODES`] modes take of a player's force and what they give of their displacement. Modes after
     /// these are not played. `contact` tells both of a mode by its number.
     pub(crate) fn set_contacts(&mut self, contact: impl Fn(usize) -> [f32; 2]) {

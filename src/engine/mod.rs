@@ -44,7 +44,7 @@ pub mod telemetry;
 mod voice;
 pub mod voice_manager;
 pub mod voice_state;
-pub mod workers;
+mod workers;
 mod zones;
 
 pub use blend::Blend;

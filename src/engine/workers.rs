@@ -6,7 +6,7 @@ pub trait Workers: Sync {
     fn each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Sync);
 
     /// Whether the notes of a part are handed out too, where there is enough to do. This allocates.
-    fn take_notes(&self) -> bool;
+    fn shares_notes(&self) -> bool;
 }
 
 /// The caller alone, in order. Real-time safe.
@@ -17,7 +17,7 @@ impl Workers for Alone {
         items.iter_mut().for_each(work);
     }
 
-    fn take_notes(&self) -> bool {
+    fn shares_notes(&self) -> bool {
         false
     }
 }

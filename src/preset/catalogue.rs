@@ -1,6 +1,7 @@
 //! The catalogue of sounds: those of the factory and the user's own.
 
 use super::library::Library;
+use super::traits::traits;
 use super::{Family, KitPreset, Playable, Preset};
 use crate::error::Error;
 use std::path::PathBuf;
@@ -13,6 +14,8 @@ pub struct Listed {
     pub playable: Playable,
     /// Its file, if it is one of the user's own.
     pub path: Option<PathBuf>,
+    /// Its tags, and those that follow from its knobs.
+    tags: Vec<String>,
     /// The text in which words are searched, in lower case.
     text: String,
 }
@@ -29,8 +32,9 @@ pub struct Catalogue {
 
 impl Listed {
     fn new(playable: Playable, path: Option<PathBuf>) -> Self {
-        let words = [playable.name(), playable.comment(), playable.details(), &playable.tags().join(" ")].join(" ");
-        let mut listed = Self { playable, path, text: words.to_lowercase() };
+        let tags = tags_of(&playable);
+        let words = [playable.name(), playable.comment(), playable.details(), &tags.join(" ")].join(" ");
+        let mut listed = Self { playable, path, tags, text: words.to_lowercase() };
         listed.text = format!("{} {}", listed.text, listed.family_name().replace('_', " "));
         listed
     }
@@ -38,6 +42,16 @@ impl Listed {
     /// Its name.
     pub fn name(&self) -> &str {
         self.playable.name()
+    }
+
+    /// Its tags: see [`tags_of`].
+    pub fn tags(&self) -> &[String] {
+        &self.tags
+    }
+
+    /// Whether it has this tag. Case does not matter.
+    pub fn has_tag(&self, tag: &str) -> bool {
+        self.tags.iter().any(|own| own.to_lowercase() == tag.trim().to_lowercase())
     }
 
     /// Its family; none for a kit, and for a preset whose file names none.
@@ -63,6 +77,17 @@ impl Listed {
     pub fn has_words(&self, words: &str) -> bool {
         words.to_lowercase().split_whitespace().all(|word| self.text.contains(word))
     }
+}
+
+/// The tags of a sound: those of its file, and for a preset what moves its body (`struck`, `pluck`, `bow`, `breath`, `noise`) and how
+/// long it sounds (`short`, `ringing`, `long`, or `sustained` while a key is held).
+pub fn tags_of(playable: &Playable) -> Vec<String> {
+    let mut tags = playable.tags().to_vec();
+    if let Playable::Preset(preset) = playable {
+        let is_new = |tag: &&str| !playable.tags().iter().any(|own| own.eq_ignore_ascii_case(tag));
+        tags.extend(traits(preset).filter(is_new).map(str::to_owned));
+    }
+    tags
 }
 
 impl Catalogue {
@@ -130,6 +155,11 @@ mod tests {
         assert!(found("hand drum").contains(&"Conga".to_owned()), "by its family");
         assert!(found("kit acoustic").contains(&"Acoustic Kit".to_owned()));
         assert!(found("no such sound").is_empty());
+        let tags = |name: &str| tags_of(&Playable::Preset(Preset::find(name).unwrap().clone())).join(" ");
+        assert_eq!(tags("Marimba"), "mallet wood struck ringing");
+        for (name, tag) in [("Side Stick", "short"), ("Church Bell", "long"), ("Violin", "bow"), ("Clarinet", "sustained")] {
+            assert!(tags(name).contains(tag), "{name}: {}", tags(name));
+        }
         let own = all.sounds.last().unwrap();
         assert_eq!((own.path.as_ref(), own.family_name()), (Some(&path), "mallet"));
     }

@@ -20,6 +20,7 @@ mod pair;
 mod phrase;
 mod programs;
 mod routes;
+mod traits;
 mod tuning;
 mod value;
 

@@ -106,7 +106,7 @@ impl Workers for Threads {
         items.par_iter_mut().with_max_len(1).for_each(&work);
     }
 
-    fn take_notes(&self) -> bool {
+    fn shares_notes(&self) -> bool {
         rayon::current_num_threads() > 1
     }
 }

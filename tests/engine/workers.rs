@@ -4,6 +4,8 @@ use crate::in_blocks::in_blocks;
 use sprung::engine::{Ensemble, Event, EventKind, Workers};
 use sprung::params::Param;
 use sprung::preset::{Preset, Programs};
+use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::Ordering::Relaxed;
 
 /// One thread that begins at the end.
 pub(crate) struct Backwards;
@@ -13,7 +15,7 @@ impl Workers for Backwards {
         items.iter_mut().rev().for_each(work);
     }
 
-    fn take_notes(&self) -> bool {
+    fn shares_notes(&self) -> bool {
         true
     }
 }
@@ -30,18 +32,38 @@ impl Workers for TwoThreads {
         });
     }
 
-    fn take_notes(&self) -> bool {
+    fn shares_notes(&self) -> bool {
         true
     }
 }
 
+/// One thread, in order; it hands out notes if that is wanted, and counts how many.
+struct Counting {
+    shares_notes: bool,
+    notes: AtomicUsize,
+}
+
+impl Workers for Counting {
+    fn each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Sync) {
+        if items.len() < CHANNELS {
+            self.notes.fetch_add(items.len(), Relaxed);
+        }
+        items.iter_mut().for_each(work);
+    }
+
+    fn shares_notes(&self) -> bool {
+        self.shares_notes
+    }
+}
+
+const CHANNELS: usize = 16;
 const FRAMES: usize = 30_000;
 
 /// Chords of six notes that are held, let go and choked, with wheels, pedal and knobs that move.
 fn chords() -> Vec<Event> {
     let event = |frame, kind| Event { frame, channel: 0, kind };
     let control = |frame, controller, value| event(frame, EventKind::Control { controller, value });
-    let mut events = vec![control(10, 64, 1.0)];
+    let mut events = vec![event(5, EventKind::Param { param: Param::InputLevel, value: -10.0 }), control(10, 64, 1.0)];
     for chord in 0..5_u32 {
         let start = chord * 5500 + 17;
         let keys = (0..6).map(|note| 36 + (chord * 5 + note * 7) as u8 % 45);
@@ -61,23 +83,31 @@ fn notes_played_apart_sound_as_if_one_thread_had_played_them() {
     let (events, programs) = (chords(), Programs::factory_kits());
     let mix = &Programs::general_midi().mix;
     let sounds = Preset::factory().iter().step_by(7).map(Preset::kit);
-    let mut heard = 0;
+    let (mut heard, mut shared) = (0, 0);
     for (index, kit) in sounds.chain(programs.iter().step_by(31).cloned()).enumerate() {
+        let input: Vec<f32> = (0..FRAMES).map(|n| if n % 400 == 0 { 0.5 } else { 0.0 }).collect();
         let new = || Ensemble::of_kits(48_000.0, 9, &kit, Vec::new()).with_mix(mix).with_chunk(4096);
-        let mut one = new();
-        let expected = in_blocks(&events, FRAMES, 4096, |events, left, right| one.process(events, left, right));
+        let render = |workers: &Counting| {
+            let (mut ensemble, mut done) = (new(), 0);
+            in_blocks(&events, FRAMES, 4096, |events, left, right| {
+                ensemble.process_by(workers, events, &input[done..done + left.len()], left, right);
+                done += left.len();
+            })
+        };
+        let [alone, apart] = [false, true].map(|shares_notes| Counting { shares_notes, notes: AtomicUsize::new(0) });
+        let (expected, in_order) = (render(&alone), render(&apart));
+        assert_eq!(alone.notes.into_inner(), 0);
+        shared += usize::from(apart.notes.into_inner() > 10);
         heard += usize::from(expected.iter().any(|bits| f32::from_bits(*bits).abs() > 0.001));
-        let (mut backwards, mut two) = (new(), new());
-        let backwards = in_blocks(&events, FRAMES, 4096, |events, left, right| {
-            backwards.process_by(&Backwards, events, &[], left, right);
-        });
+        let (mut ensemble, mut done) = (new(), 0);
         let two = in_blocks(&events, FRAMES, 1024, |events, left, right| {
-            two.process_by(&TwoThreads, events, &[], left, right);
+            ensemble.process_by(&TwoThreads, events, &input[done..done + left.len()], left, right);
+            done += left.len();
         });
-        for (order, bits) in [("backwards", backwards), ("two threads", two)] {
+        for (order, bits) in [("in order", in_order), ("two threads", two)] {
             let differs = expected.iter().zip(&bits).position(|(one, other)| one != other);
             assert_eq!(differs.map(|at| at % FRAMES), None, "sound {index}, {order}");
         }
     }
-    assert!(heard > 30, "{heard}");
+    assert!(heard > 30 && shared > 30, "{heard} {shared}");
 }

@@ -214,7 +214,7 @@ fn written(all: &[Auditioned]) -> String {
 fn article(one: &Auditioned) -> String {
     let (found, playable) = (&one.found, &one.found.playable);
     let (name, file) = (escaped(found.name()), &one.file);
-    let tags = playable.tags().join(", ");
+    let tags = found.tags().join(", ");
     let text =
         [found.name(), playable.comment(), playable.details(), &tags, found.family_name()].join(" ").to_lowercase();
     let keys = match playable {

@@ -47,7 +47,7 @@ fn described(found: &Listed) -> Value {
         "name": playable.name(),
         "kit": matches!(playable, Playable::Kit(_)),
         "family": found.family_name(),
-        "tags": playable.tags(),
+        "tags": found.tags(),
         "author": playable.author(),
         "comment": playable.comment(),
         "details": playable.details(),

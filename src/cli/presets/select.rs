@@ -20,7 +20,7 @@ pub(super) struct Select {
     /// Only sounds of this family
     #[arg(long, value_name = "FAMILY", value_parser = families())]
     family: Option<String>,
-    /// Only sounds with this tag; may be repeated
+    /// Only sounds with this tag, as `list --json` has them; may be repeated
     #[arg(long, value_name = "TAG")]
     tag: Vec<String>,
     /// Only sounds with all of these words in their name, tags, family or description
@@ -40,10 +40,8 @@ impl Select {
     }
 
     fn means(&self, listed: &Listed) -> bool {
-        let tags = listed.playable.tags();
-        let has_tag = |tag: &String| tags.iter().any(|own| own.eq_ignore_ascii_case(tag.trim()));
         self.family.as_deref().is_none_or(|family| family == listed.family_name())
-            && self.tag.iter().all(has_tag)
+            && self.tag.iter().all(|tag| listed.has_tag(tag))
             && self.search.as_deref().is_none_or(|words| listed.has_words(words))
     }
 }

@@ -34,7 +34,7 @@ fn sounds(app: &App) -> Vec<Line<'static>> {
         let name = printable(listed.name()).into_owned();
         let mark = if name == app.playing().name { "▸" } else { " " };
         let own = if listed.path.is_some() { "own " } else { "" };
-        let tags = printable(&listed.playable.tags().join(" ")).into_owned();
+        let tags = printable(&listed.tags().join(" ")).into_owned();
         Line::from(vec![Span::raw(format!("{mark} {name}")), Span::raw(format!("  {own}{tags}")).dark_gray()])
     };
     app.sounds().into_iter().map(row).collect()

@@ -12,6 +12,7 @@ use crate::dsp::coefficients::{LN_MINUS_60_DB, angle_from_frequency};
 use crate::dsp::exciter::{Drive, Player};
 use crate::dsp::simd::Instructions;
 use crate::dsp::simd::vector::LANES;
+use libm::{exp, expm1, sin};
 
 /// The bank makes tables after free ringing at one pitch for one control tick per this many modes. With few modes, the
 /// tables save the time that they cost within one tick, with 64 modes within about eight.
@@ -47,6 +48,8 @@ pub struct ModeBank {
     ratio: f64,
     /// Whether frequencies or T60s have changed since the coefficients were computed.
     retuned: bool,
+    /// Whether frequencies are among these.
+    transposed: bool,
     /// Whether `tuning` has new T60s that the coefficients do not use yet.
     damped: bool,
     /// Whether the displaced states in `tuning` are those of the present frequencies and T60s.
@@ -99,6 +102,7 @@ impl ModeBank {
             faded: false,
             ratio: 1.0,
             retuned: false,
+            transposed: false,
             damped: false,
             displaced: false,
             aimed: true,
@@ -144,7 +148,7 @@ impl ModeBank {
         self.live = self.len;
         (self.ratio, self.until_tick) = (1.0, 0);
         // The coefficients are computed when they are needed, since a note jumps to its own pitch first.
-        (self.retuned, self.displaced, self.aimed) = (true, false, false);
+        (self.retuned, self.transposed, self.displaced, self.aimed) = (true, false, false, false);
     }
 
     /// Number of modes.
@@ -219,8 +223,13 @@ impl ModeBank {
             return [0.0, if is_rendered { 0.0 } else { weight / (angle * angle) }];
         }
         // The integral of e^(st) over a frame, (e^s − 1)/s, with s = ln r + iθ and e^s = 1 − α + iβ.
-        let (real, imaginary) = (-f64::from(self.modes.alpha.0[m]), f64::from(self.modes.beta.0[m]));
         let growth = self.ln_radius[m];
+        let (real, imaginary) = if self.is_level() {
+            (-f64::from(self.modes.alpha.0[m]), f64::from(self.modes.beta.0[m]))
+        } else {
+            let (radius, half) = (exp(growth), sin(0.5 * angle));
+            (expm1(growth) - 2.0 * radius * half * half, radius * sin(angle))
+        };
         let norm = growth * growth + angle * angle;
         let along = (real * growth + imaginary * angle) / norm;
         let across = (imaginary * growth - real * angle) / norm;
@@ -251,10 +260,22 @@ impl ModeBank {
             self.half_angle[m] = 0.5 * angle_from_frequency(frequency, self.sample_rate);
             self.set_t60(m, t60);
         }
+        self.transposed = true;
+    }
+
+    /// Whether other frequencies wait for the next ramp.
+    pub(crate) fn is_transposed(&self) -> bool {
+        self.transposed
+    }
+
+    /// The ratio at which the modes turn; none within a ramp, and while other frequencies wait for one.
+    pub(crate) fn pitch(&self) -> Option<f64> {
+        (self.until_tick == 0 && !self.transposed).then_some(self.ratio)
     }
 
     /// Updates `tuning` if frequencies or T60s have changed.
     fn tune(&mut self) {
+        self.transposed = false;
         if std::mem::take(&mut self.retuned) {
             let Self { tuning, ln_radius, half_angle, len, .. } = self;
             self.instructions.run(Tune { tuning, ln_radius, half_angle, len: *len });
@@ -323,6 +344,11 @@ impl ModeBank {
             Some(frames) => Motion::Line { frames, gains, driven: false },
             None => Motion::Still { ticks: 0 },
         };
+    }
+
+    /// Whether the coefficients are those of the present frequencies, T60s and pitch ratio, and not on a ramp to them.
+    fn is_level(&self) -> bool {
+        !self.retuned && !self.damped && !matches!(self.motion, Motion::Line { .. })
     }
 
     /// Number of rendered frames of the present ramp.

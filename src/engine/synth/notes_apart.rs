@@ -82,7 +82,7 @@ impl Synth {
         let Self { manager, instruments, channels, clock, needs_control, .. } = self;
         let apart = |(index, slot): (usize, _)| {
             let slot: &mut Slot<_> = slot;
-            let instrument = instruments.of_note(&slot.note).cloned();
+            let instrument = instruments.of_note(slot.note()).cloned();
             let (channels, clock, needs_control) = (channels.clone(), *clock, *needs_control);
             NoteApart { index, slot, instrument, channels, clock, needs_control, voices: Vec::new(), end: None }
         };

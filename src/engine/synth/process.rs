@@ -109,7 +109,7 @@ impl Synth {
             self.rest(left.len());
             return false;
         }
-        if workers.take_notes() && outputs.is_none() && self.has_notes_to_share(left.len()) {
+        if workers.shares_notes() && outputs.is_none() && self.has_notes_to_share(left.len()) {
             self.render_apart(workers, input, left, right);
         } else {
             self.render(input, left, right, outputs.as_deref_mut());

@@ -66,8 +66,8 @@ impl Blowing {
         (self.valve.key, self.is_placed) = (key, false);
     }
 
-    /// The tube has another length: its modes must get their contacts again.
-    pub(super) fn retune(&mut self) {
+    /// The tube has another length, or its modes have got other contacts: they need the valve's again.
+    pub(super) fn lift(&mut self) {
         self.is_placed = false;
     }
 

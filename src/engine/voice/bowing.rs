@@ -38,6 +38,11 @@ impl Bowing {
         (self.speed, self.width, self.is_placed) = (speed, values.share(Param::BowSlip) as f32, false);
     }
 
+    /// The modes have got other contacts: they need the bow's weights again.
+    pub(super) fn lift(&mut self) {
+        self.is_placed = false;
+    }
+
     /// Whether the bow moves or is about to.
     pub(super) fn is_on(&self) -> bool {
         !self.bow_speed.is_zero()

@@ -179,8 +179,8 @@ impl SynthVoice {
             Some(instrument) => self.begin_hammer(instrument),
             None => self.strike.hammering.give_up(),
         }
-        self.control_rattle(instrument);
         self.pitch.aim(&self.controls, &bends, &self.clock, frames);
+        self.control_rattle(instrument);
         self.aim_gain(start, wheels, frames);
         self.control_driven(instrument, frames);
         self.fresh = false;
@@ -194,14 +194,18 @@ impl SynthVoice {
 
     /// Lets what rattles begin or end.
     fn control_rattle(&mut self, instrument: Option<&Instrument>) {
-        let Self { strike, modulators, bank, sample_rate, pitch, table, energy, .. } = self;
-        if !strike.rattling.is_on() {
+        if !self.strike.rattling.is_on() {
             return;
         }
+        let Self { strike, modulators, bank, sample_rate, pitch, table, energy, .. } = self;
         let values = instrument.map(|instrument| StruckValues { instrument, modulators, table: *table });
         let (share, note) = (energy.now() / strike.full_energy(), [pitch.frequency(), *sample_rate]);
-        let (full, is_touched) = (strike.full_force(), strike.hammering.is_on());
-        strike.rattling.control(values.as_ref(), [share, full], note, is_touched, bank);
+        let is_touched = strike.hammering.is_on() || strike.bowing.is_on() || strike.blowing.is_on();
+        let full = strike.full_force();
+        if strike.rattling.control(values.as_ref(), [share, full], note, pitch.ratio(), is_touched, bank) {
+            strike.bowing.lift();
+            strike.blowing.lift();
+        }
     }
 
     /// Starts the ramps of bow, breath, noise and input, which end in `frames` frames.
@@ -288,6 +292,8 @@ impl SynthVoice {
         self.energy.settle(&mut self.bank, &self.strike, &self.fader, rings);
         if blooms {
             self.bloom.climb(&self.controls, self.strike.full_energy(), self.sample_rate, &mut self.bank);
+            // The point that rattles is suddenly elsewhere.
+            self.strike.rattling.interrupt();
         }
     }
 

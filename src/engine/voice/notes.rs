@@ -66,7 +66,7 @@ impl SynthVoice {
                 Pitch::set_ratios(values, &mut self.bank);
                 self.decay.read(values, &controls, &mut self.bank);
                 self.pitch.correct(values.instrument.sound.correction());
-                self.strike.blowing.retune();
+                self.strike.blowing.lift();
             }
             None => self.decay.press(controls.decay, self.decay.damping.touch),
         }

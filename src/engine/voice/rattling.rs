@@ -20,20 +20,26 @@ const LEAST_SPEED: f64 = 1e-12;
 /// Below this share of a full strike's energy, nothing rattles any more: −80 dB.
 const STILL: f64 = 1e-8;
 
+/// By this share the pitch may be off what a rattle began at. The modes take its force, and give their place, as at that pitch: further
+/// off, each contact could add energy.
+const DRIFT: f64 = 0.03;
+
 /// The rattle of a voice. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rattling {
     kind: Kind,
     rattle: Option<Rattle>,
+    /// The pitch ratio of the modes when it began.
+    ratio: f64,
 }
 
 impl Rattling {
     /// Nothing rattles.
-    pub(super) const OFF: Self = Self { kind: Kind::Off, rattle: None };
+    pub(super) const OFF: Self = Self { kind: Kind::Off, rattle: None, ratio: 1.0 };
 
     /// Prepares what a strike makes rattle; it begins at the next [`Rattling::control`].
     pub(super) fn strike(&mut self, kind: Kind) {
-        *self = Self { kind, rattle: None };
+        *self = Self { kind, ..Self::OFF };
     }
 
     /// Whether anything rattles, or may begin to.
@@ -41,28 +47,39 @@ impl Rattling {
         self.kind != Kind::Off
     }
 
-    /// Lets the rattle begin if no hammer `is_touched`, and ends it when the body has nearly come to rest. `energy` is the body's, as
-    /// a share of that of a full strike; `full` the force of that strike, and `note` the note's frequency and the sample rate in Hz.
+    /// Begins the rattle at a control tick, unless a hammer or a player touches the body. Begins it anew when the pitch has left that at
+    /// which it began; while the pitch moves fast, it waits. Ends it when the body has nearly come to rest. `energy` is the body's, as a
+    /// share of that of a full strike; `full` the force of that strike, `note` the note's frequency and the sample rate in Hz, and
+    /// `ratio` the pitch at the next tick. Returns whether the modes have got its contacts.
     pub(super) fn control(
         &mut self,
         values: Option<&StruckValues>,
         [energy, full]: [f64; 2],
         note: [f64; 2],
+        ratio: f64,
         is_touched: bool,
         bank: &mut Cells,
-    ) {
+    ) -> bool {
         if !self.is_on() || is_touched {
-            return;
+            return false;
+        }
+        let is_near = |other: f64| (ratio / other - 1.0).abs() <= DRIFT;
+        if !is_near(self.ratio) || bank.is_transposed() {
+            self.interrupt();
         }
         if energy < STILL {
             *self = Self::OFF;
-        } else if let (None, Some(values)) = (&self.rattle, values) {
+        } else if let (None, Some(values), Some(now)) = (&self.rattle, values, bank.pitch().filter(|now| is_near(*now)))
+        {
+            self.ratio = now;
             self.rattle = self.begin(values, full, note, bank);
             if self.rattle.is_none() {
                 // A body that no strike moves hits nothing.
                 *self = Self::OFF;
             }
+            return true;
         }
+        false
     }
 
     /// Prepares the modes, and finds the rattle's law; none if the body does not move under a strike.
@@ -110,7 +127,8 @@ impl Rattling {
         self.rattle.as_mut()
     }
 
-    /// A hammer has taken the modes' contacts, or a player: the rattle begins again after it.
+    /// A hammer or a player has taken the modes' contacts, or they are suddenly elsewhere: the rattle begins anew. (While a body blooms, it
+    /// does at every control tick, so that a loose mass hardly leaves it.)
     pub(super) fn interrupt(&mut self) {
         self.rattle = None;
     }

@@ -21,7 +21,7 @@ pub(crate) struct Slot<V> {
     voices: Vec<Box<V>>,
     /// Number of cells of all its voices together.
     cells: usize,
-    pub(crate) note: Note,
+    pub(super) note: Note,
     pub(super) state: State,
     pub(super) key_down: bool,
     pub(super) sostenuto: bool,
@@ -61,6 +61,11 @@ impl<V: Voice> Slot<V> {
 
     pub(crate) fn voices(&self) -> impl Iterator<Item = &V> {
         self.voices.iter().map(|voice| &**voice)
+    }
+
+    /// The present note, or, of a free slot, the last.
+    pub(crate) fn note(&self) -> &Note {
+        &self.note
     }
 
     /// The voices, each with the note.

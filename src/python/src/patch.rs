@@ -107,7 +107,7 @@ pub(crate) fn presets(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         let entry = PyDict::new(py);
         entry.set_item("name", listed.name())?;
         entry.set_item("family", listed.family_name())?;
-        entry.set_item("tags", listed.playable.tags())?;
+        entry.set_item("tags", listed.tags())?;
         entry.set_item("comment", listed.playable.comment())?;
         entry.set_item("details", listed.playable.details())?;
         Ok(entry)

@@ -107,16 +107,14 @@ impl Resonator {
         }
     }
 
-    /// Loads other modes, at rest and at the same pitch. Unless [`Resonator::prepare`] follows, the first block is silent: the masses
-    /// get their coefficients in it, slice by slice. Real-time safe if there is room for as many.
+    /// Loads other modes, at rest and at the same pitch. Follow with [`Resonator::prepare`] or [`Resonator::begin`]. Real-time safe if
+    /// there is room for as many.
     pub(super) fn load(&mut self, modes: &ModeSet) {
         self.reset();
         self.tail.load(modes, self.sample_rate);
         self.bands.load(modes);
-        self.heads[0].forget();
         self.given = None;
         self.change();
-        self.gains = [self.noise_gain(); 2];
     }
 
     /// Sets the ratio of all frequencies to those of the body's modes. The masses have it from the next block but one on.
@@ -150,6 +148,15 @@ impl Resonator {
         }
         self.bands.settle();
         self.gains = [self.noise_gain(); 2];
+    }
+
+    /// Begins with the wanted coefficients. If the masses, which are at rest, have others, they are given these in the first block, slice
+    /// by slice, and the block is silent. Real-time safe.
+    pub(super) fn begin(&mut self) {
+        if self.given != Some(self.wanted) {
+            self.heads[0].forget();
+            self.gains = [self.noise_gain(); 2];
+        }
     }
 
     /// Whether a change of the coefficients is not heard yet.

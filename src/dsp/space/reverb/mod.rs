@@ -131,6 +131,7 @@ impl ModalReverb {
     /// Begins to play a body at rest during a sound, which fades in. It is prepared in its first block.
     fn begin(&mut self) {
         (self.state, self.ticks) = (State::Awake, Ticks::default());
+        self.body.begin();
         self.drive.jump(0.0);
         self.drive.set(1.0);
     }
