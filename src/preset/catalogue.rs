@@ -157,7 +157,9 @@ mod tests {
         assert!(found("no such sound").is_empty());
         let tags = |name: &str| tags_of(&Playable::Preset(Preset::find(name).unwrap().clone())).join(" ");
         assert_eq!(tags("Marimba"), "mallet wood struck ringing");
-        for (name, tag) in [("Side Stick", "short"), ("Church Bell", "long"), ("Violin", "bow"), ("Clarinet", "sustained")] {
+        for (name, tag) in
+            [("Side Stick", "short"), ("Church Bell", "long"), ("Violin", "bow"), ("Clarinet", "sustained")]
+        {
             assert!(tags(name).contains(tag), "{name}: {}", tags(name));
         }
         let own = all.sounds.last().unwrap();
