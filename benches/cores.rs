@@ -9,6 +9,7 @@ mod song;
 use song::{RATE, Sounds, song};
 use sprung::engine::{Ensemble, Event, Workers};
 use sprung::io::Song;
+use sprung::io::song::SongEvent;
 use sprung::preset::{Preset, Programs};
 use sprung::render::on_threads;
 use std::sync::Mutex;
@@ -107,13 +108,14 @@ fn simulated(song: &Song) -> [f64; CORES.len()] {
         let mix = &Programs::general_midi().mix;
         let mut ensemble = Ensemble::of_kits(RATE.into(), 0, &kit, programs.clone()).with_mix(mix).with_chunk(FRAMES);
         let (mut left, mut right, mut seconds) = ([0.0; FRAMES], [0.0; FRAMES], [0.0; CORES.len()]);
-        let frame = |seconds: f64| (seconds * f64::from(RATE)) as usize;
+        let frame = |event: &SongEvent| event.frame(RATE.into()) as usize;
+        let frames = Sounds::new().job(song, FRAMES).song_frames() as usize;
         let mut rest = &song.events[..];
-        for start in (0..frame(song.seconds)).step_by(FRAMES) {
-            let (now, later) = rest.split_at(rest.partition_point(|event| frame(event.seconds) < start + FRAMES));
+        for start in (0..frames).step_by(FRAMES) {
+            let (now, later) = rest.split_at(rest.partition_point(|event| frame(event) < start + FRAMES));
             let events = now.iter().map(|event| {
-                let frame = frame(event.seconds).saturating_sub(start) as u32;
-                Event { frame, channel: event.channel, kind: event.kind }
+                let SongEvent { channel, kind, .. } = *event;
+                Event { frame: (frame(event) - start) as u32, channel, kind }
             });
             let (events, timed) = (events.collect::<Vec<_>>(), Timed::default());
             let begin = Instant::now();

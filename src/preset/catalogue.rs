@@ -44,7 +44,8 @@ impl Listed {
         self.playable.name()
     }
 
-    /// Its tags: see [`tags_of`].
+    /// Its tags: those of its file, and for a preset what moves its body (`struck`, `pluck`, `bow`, `breath`, `noise`) and how long it
+    /// sounds (`short`, `ringing`, `long`, or `sustained` while a key is held).
     pub fn tags(&self) -> &[String] {
         &self.tags
     }
@@ -79,13 +80,12 @@ impl Listed {
     }
 }
 
-/// The tags of a sound: those of its file, and for a preset what moves its body (`struck`, `pluck`, `bow`, `breath`, `noise`) and how
-/// long it sounds (`short`, `ringing`, `long`, or `sustained` while a key is held).
-pub fn tags_of(playable: &Playable) -> Vec<String> {
+/// The tags of a sound: see [`Listed::tags`].
+fn tags_of(playable: &Playable) -> Vec<String> {
     let mut tags = playable.tags().to_vec();
     if let Playable::Preset(preset) = playable {
         let is_new = |tag: &&str| !playable.tags().iter().any(|own| own.eq_ignore_ascii_case(tag));
-        tags.extend(traits(preset).filter(is_new).map(str::to_owned));
+        tags.extend(traits(preset).into_iter().filter(is_new).map(str::to_owned));
     }
     tags
 }

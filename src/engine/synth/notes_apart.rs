@@ -72,7 +72,7 @@ impl NoteApart<'_> {
 impl Synth {
     /// Whether there is enough to do for [`Synth::render_apart`]. Sums of pads are made by one thread.
     pub(super) fn has_notes_to_share(&self, frames: usize) -> bool {
-        let notes = self.manager.sounding_notes();
+        let notes = self.manager.count_notes();
         notes > 1 && notes * frames >= SHARED_FRAMES && self.pads.is_none()
     }
 

@@ -108,7 +108,7 @@ impl<V: Voice> VoiceManager<V> {
     }
 
     /// How many notes play or fade.
-    pub(crate) fn sounding_notes(&self) -> usize {
+    pub(crate) fn count_notes(&self) -> usize {
         self.slots.in_use().iter().filter(|slot| !slot.is_free()).count()
     }
 
@@ -168,8 +168,7 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Silences a note at once, without a fade.
     fn cut_off(&mut self, index: usize) {
-        self.free(index);
-        self.slots.shrink();
+        self.end(std::iter::once(index));
     }
 
     fn free(&mut self, index: usize) {
