@@ -80,8 +80,8 @@ impl Listed {
     }
 }
 
-/// The tags of a sound: see [`Listed::tags`].
-fn tags_of(playable: &Playable) -> Vec<String> {
+/// The tags of a sound, as [`Listed::tags`] has them.
+pub fn tags_of(playable: &Playable) -> Vec<String> {
     let mut tags = playable.tags().to_vec();
     if let Playable::Preset(preset) = playable {
         let is_new = |tag: &&str| !playable.tags().iter().any(|own| own.eq_ignore_ascii_case(tag));

@@ -12,6 +12,9 @@ use crate::params::Param;
 use crate::preset::Preset;
 use crate::units::{gain_from_db, key_from_frequency};
 
+/// How many presets are worth a second look ([`Model::nearness`]), of those that are nearest at the first.
+pub const LOOKED_AT: usize = 40;
+
 /// Most seconds that are compared, and those of the first look.
 const LONGEST: f64 = 3.0;
 const FIRST_LOOK: f64 = 0.4;
@@ -59,6 +62,18 @@ impl Model {
         let (is_estimated, key) = (key.is_none(), key.or_else(|| estimated(&sound)));
         let (is_pitched, key) = (key.is_some(), key.unwrap_or(60.0));
         Ok(Self { bands: MelBands::new().measure(&sound), frames: sound.len(), key, is_pitched, is_estimated })
+    }
+
+    /// The sound of a preset itself, on its home key.
+    ///
+    /// # Errors
+    /// [`Error::Format`] for a preset that is silent there.
+    pub fn of_preset(preset: &Preset) -> Result<Self> {
+        let (key, frames) = (f64::from(preset.guide.home), (LONGEST * f64::from(RATE)) as usize);
+        let note = Played { key, velocity: VELOCITY, frames: frames + LATE, let_go: None };
+        let channels = vec![Audition::with_limiter().mean(&preset.patch, note)];
+        let sound = Recording { sample_rate: RATE, channels, encoding: String::new(), warnings: Vec::new() };
+        Self::new(&sound, &preset.name, Some(key))
     }
 
     /// How near a preset is at a first look: on the key that comes nearest of the recording's, that an octave higher or lower if it was
@@ -133,6 +148,9 @@ mod tests {
                 );
             }
         }
+        let marimba = Preset::find("Marimba").unwrap();
+        let itself = Model::of_preset(marimba).unwrap().nearness(marimba, marimba.guide.home.into());
+        assert!(itself.distance < 0.1, "{}", itself.distance);
         let guessed = Model::new(&recorded("Marimba", 60.0, 1.0), "sound", None).unwrap();
         assert!((guessed.key - 60.0).abs() < 0.1, "{}", guessed.key);
     }

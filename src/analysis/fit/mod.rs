@@ -57,7 +57,7 @@ mod tones;
 mod tuned;
 
 pub use body::{Explained, Family};
-pub use like::{Model, Nearness};
+pub use like::{LOOKED_AT, Model, Nearness};
 pub use names::take_velocities_from_names;
 pub use release::Release;
 pub use take::{Take, VELOCITY};

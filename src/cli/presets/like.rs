@@ -6,7 +6,7 @@ use crate::terminal::{complain_lines, print};
 use crate::{interrupt, quantity, recording};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::{Value, json};
-use sprung::analysis::fit::{Model, Nearness};
+use sprung::analysis::fit::{LOOKED_AT, Model, Nearness};
 use sprung::io::Inputs;
 use sprung::preset::{Playable, Preset};
 use sprung::units::{note_name, parse_key};
@@ -15,9 +15,6 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// How many presets are compared with the whole recording, after a first look at all.
-const LOOKED_AT: usize = 40;
 
 #[derive(clap::Args)]
 pub(super) struct Args {
