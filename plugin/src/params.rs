@@ -278,6 +278,11 @@ impl SprungParams {
         State { playable, values, positions, seed: locked.loaded.seed, view: locked.view }
     }
 
+    /// Whether a preset is loaded, and no kit. Not for the audio thread.
+    pub(crate) fn is_preset(&self) -> bool {
+        matches!(self.locked().playable, Playable::Preset(_))
+    }
+
     /// The sound that was loaded last. Not for the audio thread.
     pub(crate) fn loaded(&self) -> Arc<Loaded> {
         self.locked().loaded.clone()

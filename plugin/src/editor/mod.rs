@@ -10,6 +10,7 @@
 //! | `keyboard` | the piano, and whatever else plays a key |
 //! | `browser`, `manual`, `drops` | over the window: sounds to find and save, the manual, fits of dropped recordings |
 //! | `widgets` | what all of these are made of |
+//! | `background` | not seen: work of seconds on a thread of its own |
 //! | `binding` | in the menus of knobs: controllers that turn them |
 //! | `controls` | not seen: what widgets share, changes that hosts see, undo, the sound that is shown |
 //! | `host` | not seen: the window's size, focus and screen readers at its host |
@@ -25,6 +26,7 @@
 //! per second, so no picture of a whole window can cost less. `plugin/tests/hosts/cpu` prints the costs, and fails if a
 //! silent window is drawn.
 
+mod background;
 mod binding;
 mod body;
 mod browser;

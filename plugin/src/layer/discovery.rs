@@ -13,7 +13,7 @@ use clap_sys::factory::preset_discovery::*;
 use clap_sys::universal_plugin_id::clap_universal_plugin_id;
 use clap_sys::version::CLAP_VERSION;
 use nice_plug::prelude::ClapPlugin;
-use sprung::preset::catalogue::Listed;
+use sprung::preset::catalogue::{Listed, tags_of};
 use sprung::preset::library::Library;
 use sprung::preset::{Family, KitPreset, Playable, Preset};
 use std::collections::BTreeSet;
@@ -212,7 +212,8 @@ fn features(playable: &Playable) -> Vec<String> {
     };
     let drum = if family.is_some_and(|family| DRUMS.contains(&family)) { "drum" } else { "" };
     let mut features: Vec<String> = Vec::new();
-    for word in [own, drum].into_iter().chain(playable.tags().iter().map(String::as_str)) {
+    let tags = tags_of(playable);
+    for word in [own, drum].into_iter().chain(tags.iter().map(String::as_str)) {
         let feature = word.replace(['_', ' '], "-");
         if !feature.is_empty() && !features.contains(&feature) {
             features.push(feature);

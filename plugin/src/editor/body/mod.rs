@@ -7,5 +7,5 @@ pub(super) mod form;
 mod numbers;
 pub(super) mod origin;
 pub(super) mod page;
-mod shape;
+pub(super) mod shape;
 pub(super) mod view;

@@ -41,6 +41,14 @@ fn model_of(family: Option<Family>) -> (&'static str, Model) {
     (id, Model::find(id).cloned().unwrap_or(Model::String))
 }
 
+/// The figure of a sound's body in a picture of the size of a letter or two: of its model's, or of one that suits its family.
+pub(crate) fn small_figure(modes: &ModeTable, family: Option<Family>) -> Figure {
+    match Origin::of(modes).with_places().body() {
+        Some(body) => Figure::small(body),
+        None => Figure::small(&Body::new(model_of(family).1)),
+    }
+}
+
 impl BodyShape {
     /// The body of a sound of this family. This is slow: it computes the shapes of all modes.
     pub(super) fn of(modes: &ModeTable, family: Option<Family>) -> Self {

@@ -18,11 +18,13 @@ pub(super) struct Outcome {
     pub(super) is_stale: bool,
     /// Whether that was all the user had wanted here.
     pub(super) is_done: bool,
+    /// Whether sounds like the loaded one are wanted.
+    pub(super) compares: bool,
 }
 
 impl Outcome {
     fn new(message: impl ToString, is_stale: bool) -> Self {
-        Self { message: message.to_string(), is_stale, is_done: false }
+        Self { message: message.to_string(), is_stale, is_done: false, compares: false }
     }
 }
 
@@ -48,12 +50,13 @@ impl Details {
         self.takes_name = true;
     }
 
-    /// Shows the details of a sound and the buttons for it.
+    /// Shows the details of a sound and the buttons for it. `may_compare` says that no search for sounds like one is under way.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
         rect: Rect,
         shown: Option<&Listed>,
+        may_compare: bool,
         sounds: &Sounds,
         controls: &mut Controls,
     ) -> Option<Outcome> {
@@ -71,7 +74,7 @@ impl Details {
                 Playable::Kit(kit) => [format!("kit of {} pads", kit.pads.len()), String::new()],
             };
             let lines = [
-                sound.playable.tags().join("  "),
+                sound.tags().join("  "),
                 format!("by {}", sound.playable.author()),
                 keys,
                 macros,
@@ -79,11 +82,17 @@ impl Details {
                 sound.playable.comment().to_owned(),
                 sound.playable.details().to_owned(),
             ];
-            let bottom = rect.bottom() - 62.0;
+            let bottom = rect.bottom() - 92.0;
             for text in lines {
                 let place = Rect::from_min_max(pos2(rect.left(), top), pos2(rect.right(), bottom.max(top)));
                 top += paragraph(ui.painter(), place, &text, SMALL + 0.5, palette.muted).max(6.0) + 2.0;
             }
+        }
+        let similar =
+            Rect::from_min_max(pos2(rect.left(), rect.bottom() - 84.0), pos2(rect.right(), rect.bottom() - 60.0));
+        let look = if controls.params.is_preset() && may_compare { Look::Plain } else { Look::Disabled };
+        if button(ui, similar, "More like this", "Find sounds like this one", look, palette).clicked() {
+            return Some(Outcome { compares: true, ..Outcome::new("", false) });
         }
         let field =
             Rect::from_min_max(pos2(rect.left(), rect.bottom() - 54.0), pos2(rect.right(), rect.bottom() - 30.0));

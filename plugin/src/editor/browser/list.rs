@@ -1,6 +1,7 @@
-//! The list of the sounds that were found, each with a star that makes it a favourite.
+//! The list of the sounds that were found, each with a star that makes it a favourite and a picture of its body.
 
 use super::sounds::Sounds;
+use crate::editor::body::face;
 use crate::editor::theme::{Palette, SMALL, TEXT};
 use crate::editor::widgets::text::line;
 use egui::{Align2, Id, Rect, Role, ScrollArea, Sense, Shape, Stroke, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2};
@@ -10,6 +11,9 @@ use std::sync::Arc;
 
 /// Height of a row.
 pub(super) const ROW: f32 = 22.0;
+
+/// Width of the picture of a body.
+const PICTURE: f32 = 24.0;
 
 /// The list, for one pass.
 pub(super) struct List<'a> {
@@ -39,7 +43,7 @@ impl List<'_> {
                 ui.painter(),
                 rect.with_max_y(rect.top() + 24.0),
                 Align2::LEFT_CENTER,
-                "Nothing has these words.",
+                "No sound has all of this.",
                 TEXT,
                 palette.muted,
             );
@@ -72,7 +76,11 @@ impl List<'_> {
                     clicked.star = Some(place);
                 }
                 let colour = if is_on { palette.accent_text } else { palette.text };
-                let name = cell.with_min_x(star.right() + 2.0);
+                let picture = Rect::from_min_size(star.right_top() + vec2(1.0, 0.25), vec2(PICTURE, cell.height()));
+                if let Some(figure) = sounds.figure(sound) {
+                    face::paint(ui.painter(), picture.shrink2(vec2(1.0, 3.0)), figure, &[], None, palette);
+                }
+                let name = cell.with_min_x(picture.right() + 5.0);
                 let name = line(ui.painter(), name, Align2::LEFT_CENTER, sound.name(), TEXT, colour);
                 let rest = Rect::from_min_max(pos2(name.right() + 8.0, cell.top()), cell.max - vec2(4.0, 0.0));
                 let what = if sound.path.is_some() {

@@ -1,24 +1,29 @@
 //! The browser: finds sounds, plays them, keeps favourites, and saves sounds under a name.
 
 mod details;
+mod likeness;
 mod list;
 mod sounds;
+mod tags;
 
 use crate::editor::controls::Controls;
 use crate::editor::keyboard::audition::Audition;
 use crate::editor::theme::{GAP, PADDING, Palette, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
+use crate::editor::widgets::progress::{Face, PAUSE, paint};
 use crate::editor::widgets::text::{name_field, take_over};
 use crate::files::read;
 use crate::link::Link;
 use details::{Details, Outcome};
 use egui::{Id, Key, Rect, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, pos2, vec2};
+use likeness::Likeness;
 use list::{List, ROW, row};
 use sounds::{Category, Sounds};
 use sprung::preset::catalogue::Listed;
 use sprung::preset::library::Library;
 use sprung::preset::{Guide, Playable};
 use std::sync::Arc;
+use tags::Tags;
 
 /// Width of the list of categories, and of the details of a sound.
 const SIDE: [f32; 2] = [112.0, 250.0];
@@ -37,6 +42,8 @@ pub(super) struct Browser {
     library: Option<Library>,
     category: Category,
     words: String,
+    tags: Tags,
+    likeness: Likeness,
     details: Details,
     /// The key that plays the sound being tried.
     audition: Audition,
@@ -52,6 +59,8 @@ impl Browser {
             library,
             category: Category::All,
             words: String::new(),
+            tags: Tags::default(),
+            likeness: Likeness::default(),
             details: Details::default(),
             audition: Audition::default(),
             searches: false,
@@ -97,9 +106,12 @@ impl Browser {
         self.categories(ui, categories, palette);
         let mut message = None;
         let present = controls.params.name();
-        let (search, rows) = list.split_top_bottom_at_y(list.top() + 28.0);
+        let (search, rest) = list.split_top_bottom_at_y(list.top() + 28.0);
+        let (tags, rows) = rest.split_top_bottom_at_y(rest.top() + tags::height());
         let command = self.search(ui, search, palette);
-        let found = sounds.find(self.category, &self.words);
+        let mut found = sounds.find(self.category, &self.words, self.likeness.places());
+        self.tags.retain(&mut found);
+        self.tags.show(ui, tags, &found, palette);
         let chosen = match command {
             Command::Nothing => None,
             // While another field has the focus, the arrow keys belong to that field.
@@ -123,14 +135,22 @@ impl Browser {
             self.try_out(ui, sound, controls);
         }
         let shown = found.iter().find(|sound| sound.name() == controls.params.name());
-        let outcome = self.details.show(ui, details, shown.map(Arc::as_ref), &sounds, controls);
+        let compared = self.follow_comparison(ui, rows, controls);
+        let may_compare = self.likeness.search.is_none();
+        let outcome = self.details.show(ui, details, shown.map(Arc::as_ref), may_compare, &sounds, controls);
+        if outcome.as_ref().is_some_and(|outcome| outcome.compares)
+            && let Playable::Preset(preset) = controls.params.state().playable
+        {
+            message = self.likeness.start(preset, &sounds).err().or(message);
+        }
+        let message = compared.or(message);
         let is_stale = outcome.as_ref().is_some_and(|outcome| outcome.is_stale);
         let broken =
             sounds.broken.first().map(|first| format!("{} of your files cannot be read: {first}", sounds.broken.len()));
         self.sounds = (!is_stale).then_some(sounds);
         match outcome {
-            Some(Outcome { message, is_done, .. }) => Some((message, is_done)),
-            None => message.or(broken).map(|message| (message, false)),
+            Some(Outcome { message, is_done, compares: false, .. }) => Some((message, is_done)),
+            _ => message.or(broken).map(|message| (message, false)),
         }
     }
 
@@ -144,18 +164,51 @@ impl Browser {
         self.audition.release(link);
     }
 
+    /// Shows how far the search for sounds like one is, and its result when it ends, unless one looks for others meanwhile. Returns a
+    /// message if there is none.
+    fn follow_comparison(&mut self, ui: &Ui, within: Rect, controls: &Controls) -> Option<String> {
+        let search = self.likeness.search.as_mut()?;
+        let Some(ended) = search.take() else {
+            ui.ctx().request_repaint_after(PAUSE);
+            let (name, share, is_ending) = (&search.name, search.share(), search.is_cancelled());
+            let face = Face { verb: "Comparing with", name, share, is_ending, cancel: "Cancel the comparison" };
+            if paint(ui, within, &face, controls.palette).clicked() {
+                search.cancel();
+            }
+            return None;
+        };
+        ui.ctx().request_repaint();
+        let name = std::mem::take(&mut search.name);
+        self.likeness.search = None;
+        match ended {
+            Ok(places) => {
+                self.likeness.found = Some((name, places));
+                if self.words.is_empty() && self.tags.are_empty() {
+                    self.category = Category::Like;
+                }
+                None
+            }
+            Err(message) => Some(message),
+        }
+    }
+
+    /// Shows all of a category: words and tags of another search would hide most of it.
+    fn choose(&mut self, category: Category) {
+        (self.category, self.words) = (category, String::new());
+        self.tags.clear();
+    }
+
     fn categories(&mut self, ui: &mut Ui, rect: Rect, palette: &Palette) {
         let mut inner = ui.new_child(UiBuilder::new().id_salt("categories").max_rect(rect));
         ScrollArea::vertical().id_salt("categories").auto_shrink(false).show(&mut inner, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
-            for category in Category::all() {
+            let compared = self.likeness.found.as_ref().map(|(name, _)| (Category::Like, format!("Like {name}")));
+            for (category, name) in compared.into_iter().chain(Category::all().map(|each| (each, each.name()))) {
                 let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW - 2.0), Sense::hover());
-                let name = category.name();
                 let look = if category == self.category { Look::On } else { Look::Off };
                 if button(ui, row, &name, &format!("Show {name}"), look, palette).clicked() && self.category != category
                 {
-                    // All of the category is shown: words of another search would hide most of it.
-                    (self.category, self.words) = (category, String::new());
+                    self.choose(category);
                 }
                 if matches!(category, Category::Kits) {
                     ui.add_space(6.0);

@@ -1,9 +1,12 @@
 //! The sounds to choose from: the factory's and the user's own, by family, words and favourites.
 
+use crate::editor::body::figure::Figure;
+use crate::editor::body::shape::small_figure;
 use sprung::preset::catalogue::{Catalogue, Listed};
 use sprung::preset::library::Library;
 use sprung::preset::{Family, Playable};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A category of sounds in the browser.
@@ -14,6 +17,8 @@ pub(super) enum Category {
     Favourites,
     Own,
     Kits,
+    /// Those that were found to be like one.
+    Like,
     Family(Family),
 }
 
@@ -31,6 +36,7 @@ impl Category {
             Self::Favourites => "Favourites".to_owned(),
             Self::Own => "Your own".to_owned(),
             Self::Kits => "Kits".to_owned(),
+            Self::Like => "Like another".to_owned(),
             Self::Family(family) => {
                 let name = family.name().replace('_', " ");
                 name[..1].to_uppercase() + &name[1..]
@@ -39,11 +45,21 @@ impl Category {
     }
 }
 
+/// What tells a preset of the catalogue from others: its name, and the file of one of the user's.
+pub(super) type Place = (String, Option<PathBuf>);
+
+/// The place of a preset; none for a kit.
+pub(super) fn place(sound: &Listed) -> Option<Place> {
+    matches!(sound.playable, Playable::Preset(_)).then(|| (sound.name().to_owned(), sound.path.clone()))
+}
+
 /// All sounds.
 pub(super) struct Sounds {
     pub(super) library: Option<Library>,
     catalogue: Catalogue,
     favourites: BTreeSet<String>,
+    /// The bodies of presets, by their places in memory.
+    figures: BTreeMap<usize, Figure>,
     /// Files of the user that could not be read, and why.
     pub(super) broken: Vec<String>,
 }
@@ -58,24 +74,50 @@ impl Sounds {
             None
         });
         let favourites = favourites.unwrap_or_default();
-        Self { library, catalogue, favourites, broken }
+        let figure = |sound: &Arc<Listed>| match &sound.playable {
+            Playable::Preset(preset) => {
+                Some((Arc::as_ptr(sound).addr(), small_figure(&preset.patch.modes, preset.guide.family)))
+            }
+            Playable::Kit(_) => None,
+        };
+        let figures = catalogue.sounds.iter().filter_map(figure).collect();
+        Self { library, catalogue, favourites, figures, broken }
+    }
+
+    /// The picture of a preset's body; none for a kit.
+    pub(super) fn figure(&self, sound: &Arc<Listed>) -> Option<&Figure> {
+        self.figures.get(&Arc::as_ptr(sound).addr())
     }
 
     pub(super) fn is_favourite(&self, sound: &Listed) -> bool {
         self.favourites.contains(sound.name())
     }
 
-    /// The sounds of a category that contain all words; those with the words in their names come first.
-    pub(super) fn find(&self, category: Category, words: &str) -> Vec<Arc<Listed>> {
+    /// All sounds.
+    pub(super) fn all(&self) -> impl Iterator<Item = &Arc<Listed>> {
+        self.catalogue.sounds.iter()
+    }
+
+    /// The sounds of a category that contain all words; those with the words in their names come first, and those in `like` in the
+    /// order of these.
+    pub(super) fn find(&self, category: Category, words: &str, like: &[Place]) -> Vec<Arc<Listed>> {
+        let rank = |sound: &Listed| {
+            let own = place(sound)?;
+            like.iter().position(|place| *place == own)
+        };
         let is_on = |sound: &Listed| match category {
             Category::All => true,
             Category::Favourites => self.is_favourite(sound),
             Category::Own => sound.path.is_some(),
             Category::Kits => matches!(sound.playable, Playable::Kit(_)),
+            Category::Like => rank(sound).is_some(),
             Category::Family(wanted) => sound.family() == Some(wanted),
         };
         let mut found = self.catalogue.find(words);
         found.retain(|sound| is_on(sound));
+        if category == Category::Like {
+            found.sort_by_key(|sound| rank(sound));
+        }
         found
     }
 
@@ -104,13 +146,18 @@ mod tests {
         std::fs::write(library.presets_folder().join("broken.toml"), "x").unwrap();
         let mut sounds = Sounds::read(Some(library.clone()));
         let names = |sounds: &Sounds, category, words: &str| -> Vec<String> {
-            sounds.find(category, words).iter().map(|sound| sound.name().to_owned()).collect()
+            sounds
+                .find(category, words, &["Kick", "Marimba"].map(|name| (name.to_owned(), None)))
+                .iter()
+                .map(|sound| sound.name().to_owned())
+                .collect()
         };
         assert_eq!(names(&sounds, Category::Own, ""), ["My Glass"]);
         assert_eq!(names(&sounds, Category::All, "MY glass"), ["My Glass"]);
         assert!(names(&sounds, Category::Family(Family::Mallet), "").contains(&"Marimba".to_owned()));
         assert!(names(&sounds, Category::Family(Family::Kick), "marimba").is_empty());
         assert!(names(&sounds, Category::Kits, "").contains(&"Acoustic Kit".to_owned()));
+        assert_eq!(names(&sounds, Category::Like, ""), ["Kick", "Marimba"]);
         assert!(names(&sounds, Category::Favourites, "").is_empty());
         assert_eq!(sounds.set_favourite("Marimba", true), None);
         assert_eq!(names(&sounds, Category::Favourites, ""), ["Marimba"]);

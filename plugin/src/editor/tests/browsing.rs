@@ -8,7 +8,7 @@ use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
 use crate::params::SprungParams;
 use egui::{Event, Key, Role};
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use sprung::params::Param;
 use sprung::preset::library::Library;
 use sprung::preset::{Playable, Preset};
@@ -199,4 +199,41 @@ fn a_sound_is_marked_while_it_differs_from_what_was_loaded_or_saved() {
     step(&mut history, -12.0);
     history.end_swap("version B", false, &params);
     assert!(!history.is_changed(), "the other version is as it was loaded");
+}
+
+#[test]
+fn tags_narrow_the_list_together_and_go_with_another_family() {
+    let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    stage.button("Browse");
+    let count = |stage: &Stage| stage.harness.query_all_by_role(Role::ListItem).count();
+    let all = count(&stage);
+    stage.button("Only metal");
+    let metal = count(&stage);
+    stage.button("Only long");
+    let long = count(&stage);
+    assert!(all > metal && metal > long && long > 0, "{all} {metal} {long}");
+    assert!(stage.harness.query_by_label("Marimba").is_none(), "it is of wood");
+    stage.button("Only metal");
+    assert!(count(&stage) > long, "a click lets go of a tag");
+    stage.button("Show Mallet");
+    assert!(stage.harness.query_by_role_and_label(Role::ListItem, "Marimba").is_some());
+}
+
+#[test]
+fn sounds_like_one_are_found_in_the_background() {
+    let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    stage.button("Browse");
+    stage.button("Find sounds like this one");
+    assert!(stage.harness.query_by_label("Cancel the comparison").is_some(), "it can be cancelled");
+    let end = std::time::Instant::now() + std::time::Duration::from_secs(300);
+    while stage.harness.query_by_label("Show Like Marimba").is_none() {
+        assert!(std::time::Instant::now() < end, "the comparison ends");
+        std::thread::sleep(std::time::Duration::from_millis(100));
+        stage.harness.run_steps(1);
+    }
+    stage.harness.run_steps(2);
+    let listed: Vec<_> =
+        stage.harness.query_all_by_role(Role::ListItem).filter_map(|node| node.accesskit_node().label()).collect();
+    assert_eq!(listed[0], "Marimba", "nothing is nearer to it than itself: {listed:?}");
+    assert!(listed.iter().any(|name| name == "Resonator Marimba"), "{listed:?}");
 }

@@ -4,8 +4,8 @@ use super::dropped::Dropped;
 use super::fake_host::Call;
 use super::pictures::{Stage, compare, finish, stage};
 use super::renderer::Renderer;
-use crate::editor::drops::fitting::{Face, paint};
 use crate::editor::theme::{SIZE, Theme, install_fonts};
+use crate::editor::widgets::progress::{Face, paint};
 use crate::state::State;
 use egui::{Role, vec2};
 use egui_kittest::Harness;
@@ -119,7 +119,13 @@ fn pictures_of_the_panel_are_as_accepted() {
             }
             let window = ui.ctx().content_rect();
             ui.painter().rect_filled(window, 0.0, theme.palette().panel);
-            let face = Face { name: "church bell, struck softly.wav", share: 0.43, is_ending };
+            let face = Face {
+                verb: "Fitting",
+                name: "church bell, struck softly.wav",
+                share: 0.43,
+                is_ending,
+                cancel: "Cancel the fit",
+            };
             paint(ui, window, &face, theme.palette());
         };
         let mut harness = Harness::builder().with_size(vec2(width, 100.0)).renderer(Renderer::default()).build_ui(show);
@@ -178,7 +184,7 @@ fn a_fit_is_cancelled_and_a_second_one_refused_meanwhile() {
     // With the pointer over a widget, the status line would show its hint instead of the message.
     stage.harness.event(egui::Event::PointerGone);
     stage.wait();
-    stage.assert_says("cancelled: long.wav was not fitted");
+    stage.assert_says("cancelled: long.wav");
     assert!(stage.params.state() == before && stage.host.calls().is_empty());
     // The panel is gone, and another recording can be dropped. The window is then closed during that fit.
     stage.drop_files(&[&path]);
