@@ -1,6 +1,6 @@
 //! The state that a host stores in its project: the text of the preset or kit, and the knob positions.
 //!
-//! A kit's presets are in the state too: a project must not depend on files that may disappear.
+//! A kit's presets are in its text: a project must not depend on files that may disappear.
 //!
 //! The state is JSON inside the wrapper's JSON. `filter_state` removes the wrapper's own list of parameters, so that
 //! everything is loaded at once from this text, or nothing if it is no state at all. If a state is newer or damaged,
@@ -34,8 +34,7 @@ const EXCITERS: [Param; 6] =
 const FORMAT: u64 = 1;
 
 /// The keys of a state.
-const KEYS: [&str; 10] =
-    ["format", "preset", "kit", "sounds", "values", "positions", "seed", "window", "zoom", "theme"];
+const KEYS: [&str; 9] = ["format", "preset", "kit", "values", "positions", "seed", "window", "zoom", "theme"];
 
 /// Size and look of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,12 +81,9 @@ struct Saved {
     /// The text of a preset file.
     #[serde(skip_serializing_if = "Option::is_none")]
     preset: Option<String>,
-    /// The text of a kit file, if there is no preset.
+    /// The text of a kit file with all of its presets, if there is no preset.
     #[serde(skip_serializing_if = "Option::is_none")]
     kit: Option<String>,
-    /// The texts of the presets that a kit names.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    sounds: BTreeMap<String, String>,
     /// Values that differ from those of the kit's files, by parameter id.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     values: BTreeMap<&'static str, f32>,
@@ -156,6 +152,14 @@ impl State {
         self
     }
 
+    /// The sound as it is heard, to be saved: a kit has the values of its knobs in its sounds.
+    pub(crate) fn into_sound(self) -> Playable {
+        match self.playable {
+            Playable::Kit(kit) => Playable::Kit(kit.with_values(&self.values)),
+            preset => preset,
+        }
+    }
+
     /// The part of the state for the audio thread. Computes the sounds.
     pub(crate) fn loaded(&self) -> Loaded {
         let Self { playable, values, positions, seed, .. } = self;
@@ -170,7 +174,6 @@ impl State {
             format: FORMAT,
             preset: None,
             kit: None,
-            sounds: BTreeMap::new(),
             values: BTreeMap::new(),
             positions,
             seed: self.seed,
@@ -182,8 +185,7 @@ impl State {
             Playable::Preset(preset) => saved.preset = Some(preset.to_toml()),
             Playable::Kit(kit) => {
                 let of_files = *kit.kit().values();
-                saved.kit = Some(kit.to_toml());
-                saved.sounds = kit.sounds.iter().map(|(name, preset)| (name.clone(), preset.to_toml())).collect();
+                saved.kit = Some(kit.to_whole_toml());
                 saved.values = changes(|param| self.values.get(param), |param| of_files.get(param));
             }
         }
@@ -250,28 +252,16 @@ fn changes(now: impl Fn(Param) -> f32, before: impl Fn(Param) -> f32) -> BTreeMa
 /// The preset or kit of a state.
 fn read_playable(saved: &Map<String, Value>, complaints: &mut Vec<String>) -> Result<Playable, String> {
     let text = |key: &str| saved.get(key).and_then(Value::as_str);
-    let mut of_sounds = vec![];
-    let (playable, lines) = match (text("preset"), text("kit")) {
+    let read = match (text("preset"), text("kit")) {
         (Some(preset), _) => {
             let read = Preset::parse_lenient(preset, "the state's preset");
             read.map(|(preset, lines)| (Playable::Preset(preset), lines))
         }
-        (None, Some(kit)) => {
-            let mut find = |name: &str| {
-                let Some(text) = saved.get("sounds").and_then(|sounds| sounds.get(name)).and_then(Value::as_str) else {
-                    return Preset::find(name).cloned();
-                };
-                let (preset, lines) = Preset::parse_lenient(text, name)?;
-                of_sounds.extend(lines.into_iter().map(|line| format!("‘{name}’: {line}")));
-                Ok(preset)
-            };
-            Playable::parse_lenient(kit, "the state's kit", &mut find)
-        }
+        (None, Some(kit)) => Playable::parse_lenient(kit, "the state's kit", &mut |name| Preset::find(name).cloned()),
         (None, None) => return Err("not a state of Sprung: there is neither a preset nor a kit".to_owned()),
-    }
-    .map_err(|error| error.to_string())?;
+    };
+    let (playable, lines) = read.map_err(|error| error.to_string())?;
     complaints.extend(lines);
-    complaints.extend(of_sounds);
     Ok(playable)
 }
 

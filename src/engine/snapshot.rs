@@ -41,7 +41,8 @@ pub struct Mass {
 pub struct Snapshot {
     /// Number of voices that play or fade.
     pub voices: u32,
-    /// The masses by mode number, added up over all voices. Modes after the first [`MAX_MODES`] are left out.
+    /// The masses by mode number, added up over all voices; of a kit, over those that play the sound of the newest note. Modes after
+    /// the first [`MAX_MODES`] are left out.
     pub masses: [Mass; MAX_MODES],
     /// The notes whose last strikes are the newest, the newest first; none after the last.
     pub notes: [Option<SoundingNote>; SHOWN_NOTES],
@@ -55,13 +56,16 @@ impl Default for Snapshot {
 }
 
 impl Snapshot {
-    /// Adds a voice that plays `note`.
-    pub(super) fn add(&mut self, note: &Note, voice: &SynthVoice) {
+    /// Adds a voice that plays `note`, with or without its masses.
+    pub(super) fn add(&mut self, note: &Note, voice: &SynthVoice, has_masses: bool) {
         // The unison voices of a note have the same routes.
         if voice.unison_index() == 0 {
             self.add_note(note, voice);
         }
         self.voices += 1;
+        if !has_masses {
+            return;
+        }
         for (mass, (displacement, energy)) in self.masses.iter_mut().zip(voice.bank.masses()) {
             mass.displacement += displacement;
             mass.energy += energy;
@@ -96,9 +100,10 @@ impl Snapshot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::{Ensemble, Event, EventKind};
+    use crate::engine::{Ensemble, Event, EventKind, Synth};
     use crate::patch::routes::{Route, Routes, Source, amount_param};
     use crate::patch::{Mode, ModeTable, Patch};
+    use crate::preset::Playable;
 
     #[test]
     fn struck_masses_are_seen_to_move_and_to_come_to_rest() {
@@ -170,5 +175,27 @@ mod tests {
         let keys = ensemble.snapshot().notes.map(|note| note.map_or(0, |note| note.key));
         let expected: [u8; SHOWN_NOTES] = std::array::from_fn(|place| 59 - place as u8);
         assert_eq!(keys, expected);
+    }
+
+    #[test]
+    fn the_masses_of_a_kit_are_those_of_its_newest_note() {
+        let Ok(Playable::Kit(kit)) = Playable::find("Acoustic Kit") else { panic!("it is there") };
+        let masses = |keys: &[u8]| {
+            let mut synth = Synth::new(48_000.0, 0);
+            synth.set_kit(&kit.kit());
+            for key in keys {
+                synth.handle(&Event::note_on(0, *key, 0.8));
+                synth.process(&[], &mut [0.0; 600], &mut [0.0; 600]);
+            }
+            let mut snapshot = Snapshot::default();
+            synth.show(&mut snapshot);
+            assert_eq!(snapshot.notes.iter().flatten().count(), keys.len());
+            snapshot.masses.map(|mass| mass.energy)
+        };
+        let moving = |masses: &[f32]| masses.iter().filter(|energy| **energy > 0.0).count();
+        let (crash, kick) = (masses(&[49]), masses(&[36]));
+        assert!(moving(&crash) > moving(&kick) && moving(&kick) > 0);
+        assert_eq!(moving(&masses(&[36, 49])), moving(&crash));
+        assert_eq!(moving(&masses(&[49, 36])), moving(&kick));
     }
 }

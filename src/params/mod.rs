@@ -105,6 +105,11 @@ impl Param {
         Self::StringsLevel as usize <= self as usize && self as usize <= Self::StereoWidth as usize
     }
 
+    /// Whether it is of a kit as a whole, and not of each of its sounds. Real-time safe.
+    pub(crate) const fn is_of_kit(self) -> bool {
+        matches!(self, Self::Voices | Self::Mode | Self::Priority | Self::Choke | Self::Limiter)
+    }
+
     /// Whether it belongs to the space, the reverberating body behind the voices. Real-time safe.
     pub(crate) const fn is_of_space(self) -> bool {
         Self::Space as usize <= self as usize && self as usize <= Self::SpaceMix as usize

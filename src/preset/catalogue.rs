@@ -141,7 +141,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let library = Library::at(folder.path());
         let own = Preset { name: "My Glass".to_owned(), ..Preset::find("Marimba").unwrap().clone() };
-        let path = library.save(&own, false).unwrap();
+        let path = library.save(&Playable::Preset(own), false).unwrap();
         std::fs::write(library.presets_folder().join("broken.toml"), "x").unwrap();
         let all = Catalogue::read(Some(&library));
         assert_eq!((all.sounds.len(), all.broken.len()), (Catalogue::of_factory().sounds.len() + 1, 1));

@@ -1,7 +1,7 @@
 //! Kits as they are saved: the preset that each key plays.
 
 use super::Preset;
-use crate::params::Param;
+use crate::params::{PARAMS, Param, Values};
 use crate::sound::kit::KEYS;
 use crate::sound::{Kit, Pad};
 use std::sync::Arc;
@@ -43,6 +43,27 @@ pub enum Playable {
 }
 
 impl KitPreset {
+    /// The kit as it sounds while its parameters have these values: those behind the voices become the kit's, and each sound is as
+    /// far from its own value, in knob travel, as the kit's is from the default.
+    #[must_use]
+    pub fn with_values(mut self, values: &Values) -> Self {
+        self.voices = values.get(Param::Voices) as u8;
+        for info in PARAMS {
+            let (param, value) = (info.param, values.get(info.param));
+            let patches = self.sounds.iter_mut().map(|(_, preset)| &mut preset.patch);
+            if param.is_behind_voices() {
+                self.params.retain(|(own, _)| *own != param);
+                if patches.into_iter().any(|patch| patch.get(param) != value) {
+                    self.params.push((param, value));
+                }
+            } else if value != info.default && !param.is_of_kit() {
+                let offset = info.normalise(value) - info.normalise(info.default);
+                patches.for_each(|patch| patch.set(param, info.denormalise(info.normalise(patch.get(param)) + offset)));
+            }
+        }
+        self
+    }
+
     /// The kit to play. Allocates.
     pub fn kit(&self) -> Arc<Kit> {
         let sounds = self.sounds.iter().map(|(_, preset)| preset.sound()).collect();
@@ -58,6 +79,14 @@ impl KitPreset {
 }
 
 impl Playable {
+    /// Gives the preset or kit another name.
+    pub fn rename(&mut self, name: impl Into<String>) {
+        match self {
+            Self::Preset(preset) => preset.name = name.into(),
+            Self::Kit(kit) => kit.name = name.into(),
+        }
+    }
+
     /// The name of the preset or kit.
     pub fn name(&self) -> &str {
         match self {
@@ -120,6 +149,34 @@ impl Playable {
         match self {
             Self::Preset(preset) => vec![preset],
             Self::Kit(kit) => kit.sounds.iter_mut().map(|(_, preset)| preset).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_kit_takes_the_values_of_its_knobs() {
+        let Ok(Playable::Kit(kit)) = Playable::find("Acoustic Kit") else { panic!("it is there") };
+        let mut values = *kit.kit().values();
+        assert_eq!(kit.kit(), kit.clone().with_values(&values).kit(), "as they are");
+        for (param, value) in [(Param::Voices, 9.0), (Param::SpaceMix, 31.0)] {
+            values.set(param, value);
+        }
+        let info = Param::Decay.info();
+        values.set(Param::Decay, info.denormalise(info.normalise(info.default) + 0.1));
+        let taken = kit.clone().with_values(&values);
+        let expected = {
+            let mut expected = values;
+            expected.set(Param::Decay, info.default);
+            expected
+        };
+        assert_eq!(taken.kit().values(), &expected);
+        for ((_, before), (_, after)) in kit.sounds.iter().zip(&taken.sounds) {
+            let way = |preset: &Preset| info.normalise(preset.patch.get(Param::Decay));
+            assert!((way(after) - (way(before) + 0.1).min(1.0)).abs() < 1e-5, "{}", before.name);
         }
     }
 }

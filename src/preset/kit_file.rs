@@ -11,10 +11,11 @@ use crate::params::Param;
 use crate::sound::Pad;
 use crate::sound::kit::OUTPUTS;
 use crate::units::{key_from_note_name, note_name, parse_key};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use toml::{Table, Value};
 
-const KEYS: [&str; 9] = ["kit", "name", "author", "tags", "comment", "details", "voices", "params", "keys"];
+const KEYS: [&str; 10] = ["kit", "name", "author", "tags", "comment", "details", "voices", "params", "keys", "sounds"];
 const PAD_KEYS: [&str; 8] = ["key", "name", "sound", "pitch", "gain", "pan", "choke", "output"];
 
 /// Finds the preset with the name that a kit uses.
@@ -23,7 +24,7 @@ type Find<'a> = &'a mut dyn FnMut(&str) -> crate::Result<Preset>;
 /// Reads as much of a preset or kit as possible. Returns an error only if the text is neither.
 pub(super) fn parse(text: &str, origin: &str, find: Find, complaints: &mut Complaints) -> crate::Result<Playable> {
     if text.len() as u64 > MAX_FILE_SIZE {
-        return Err(Error::format(origin, "too large for a kit: expected at most 1 MiB of TOML"));
+        return Err(Error::format(origin, "too large for a kit: expected at most 16 MiB of TOML"));
     }
     let table = table(text, origin)?;
     let read = match table.get("kit") {
@@ -67,14 +68,45 @@ fn read(table: &Table, version: &Value, find: Find, complaints: &mut Complaints)
             &[]
         }
     };
+    let own = read_sounds(table.get("sounds"), complaints);
+    let mut find = |name: &str| own.get(name).cloned().map_or_else(|| find(name), Ok);
     for (index, pad) in pads.iter().enumerate() {
         let place = format!("keys[{index}]");
         match pad {
-            Value::Table(pad) => read_pad(&place, pad, &mut kit, find, complaints),
+            Value::Table(pad) => read_pad(&place, pad, &mut kit, &mut find, complaints),
             other => complaints.add(unexpected(&place, "a table, [[keys]]", other)),
         }
     }
+    for name in own.keys().filter(|name| !kit.sounds.iter().any(|(used, _)| used == *name)) {
+        complaints.add(format!("sounds.{name}: no key plays it: expected a key with sound = {}", toml_string(name)));
+    }
     Ok(kit)
+}
+
+/// Reads the presets that are in the kit's file itself, by name.
+fn read_sounds(value: Option<&Value>, complaints: &mut Complaints) -> BTreeMap<String, Preset> {
+    let mut sounds = BTreeMap::new();
+    let tables = match value {
+        Some(Value::Table(tables)) => tables,
+        Some(other) => {
+            complaints.add(unexpected("sounds", "presets by name, [sounds.NAME]", other));
+            return sounds;
+        }
+        None => return sounds,
+    };
+    for (name, value) in tables {
+        let mut own = Complaints::default();
+        let read = match value {
+            Value::Table(table) => file::read(table, &mut own),
+            other => Err(format!("expected a preset, found {}", other.type_str())),
+        };
+        let place = format!("sounds.{name}: ");
+        own.into_lines().into_iter().for_each(|line| complaints.add(format!("{place}{line}")));
+        if let Some(preset) = complaints.take(&place, read) {
+            sounds.insert(name.clone(), preset);
+        }
+    }
+    sounds
 }
 
 /// Reads a pad and adds it to the kit, if it has a key and a sound.
@@ -170,8 +202,9 @@ fn read_pan(value: Option<&Value>) -> Result<f32, String> {
     if (-1.0..=1.0).contains(&pan) { Ok(pan) } else { Err(format!("{pan} is out of range: expected -1 to 1")) }
 }
 
-/// Writes a kit. `{:?}` writes a float as the shortest text that reads back as the same number, and that is valid TOML.
-pub(super) fn to_toml(kit: &KitPreset) -> String {
+/// Writes a kit, with the presets in it that `has` says. `{:?}` writes a float as the shortest text that reads back as the same
+/// number, and that is valid TOML.
+pub(super) fn to_toml(kit: &KitPreset, has: &dyn Fn(&str, &Preset) -> bool) -> String {
     let KitPreset { name, author, tags, comment, details, voices, params, sounds, pads } = kit;
     let mut out = format!("kit = {KIT_VERSION}\n{}", about_to_toml([name, author, comment, details], tags));
     if f32::from(*voices) != Param::Voices.info().max {
@@ -206,6 +239,14 @@ pub(super) fn to_toml(kit: &KitPreset) -> String {
             let _ = writeln!(out, "output = {}", pad.output);
         }
     }
+    for (name, preset) in sounds.iter().filter(|(name, preset)| has(name, preset)) {
+        // A table of two levels, so that every line of it has its whole path.
+        let preset = preset.to_toml().parse().map(Value::Table);
+        let preset = preset.expect("what a preset writes can be read");
+        let sounds = Table::from_iter([(name.clone(), preset)]);
+        let whole = Table::from_iter([("sounds".to_owned(), Value::Table(sounds))]);
+        let _ = write!(out, "\n{whole}");
+    }
     out
 }
 
@@ -239,6 +280,42 @@ mod tests {
         let playing = kit.kit();
         assert_eq!((playing.name(), playing.sounds().len(), playing.pad(37)), ("k", 3, None));
         assert_eq!(playing.pad(127), Some(&kit.pads[3].1));
+    }
+
+    #[test]
+    fn presets_in_a_kit_come_before_others_and_are_written_back() {
+        let kick = Preset::find("Kick").unwrap();
+        let mut own = kick.clone();
+        own.patch.set(Param::Decay, 0.123_456_79);
+        let sounds =
+            vec![("Kick".to_owned(), own.clone()), ("Snare".to_owned(), Preset::find("Snare").unwrap().clone())];
+        let pads = vec![(36, Pad::of(0)), (38, Pad::of(1))];
+        let Ok(Playable::Kit(empty)) = parse("kit = 1\nname = \"k\"\nkeys = [{ key = 1, sound = \"Kick\" }]") else {
+            panic!("a kit")
+        };
+        let kit = KitPreset { sounds, pads, ..empty };
+        let (text, whole) = (kit.to_toml(), kit.to_whole_toml());
+        assert!(text.contains("[sounds.Kick.params]") && !text.contains("[sounds.Snare"), "{text}");
+        assert!(whole.contains("[sounds.Snare"), "{whole}");
+        for text in [&text, &whole] {
+            assert_eq!(parse(text).unwrap(), Playable::Kit(kit.clone()), "{text}");
+        }
+        let nowhere = |name: &str| Err(Error::value(name, "nowhere"));
+        assert_eq!(Playable::parse(&whole, "x", &mut { nowhere }).unwrap(), Playable::Kit(kit));
+        for (body, expected) in [
+            ("sounds = 3", "x: sounds: expected presets by name, [sounds.NAME], found integer ‘3’"),
+            ("sounds = { Kick = 3 }", "x: sounds.Kick: expected a preset, found integer"),
+            ("sounds = { Kick = { kit = 1 } }", "x: sounds.Kick: this is a kit: expected a preset"),
+            ("sounds = { Kick = { format = 1, name = \"a\", x = 1 } }", "x: sounds.Kick: unknown key ‘x’"),
+            (
+                "sounds = { Odd = { format = 1, name = \"a\" } }",
+                "x: sounds.Odd: no key plays it: expected a key with sound = \"Odd\"",
+            ),
+        ] {
+            let text = format!("kit = 1\nname = \"k\"\n{body}\nkeys = [{{ key = 1, sound = \"Kick\" }}]");
+            let error = parse(&text).unwrap_err().to_string();
+            assert!(error.starts_with(expected), "{error}\nexpected: {expected}");
+        }
     }
 
     #[test]

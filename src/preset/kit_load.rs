@@ -8,9 +8,15 @@ use std::fs::File;
 use std::path::{Component, Path};
 
 impl KitPreset {
-    /// Writes the kit as TOML. [`Playable::read`] gives exactly the same kit, provided it finds the same presets.
+    /// Writes the kit as TOML, with the presets in it that are not the factory's. [`Playable::parse`] gives exactly the same kit.
     pub fn to_toml(&self) -> String {
-        kit_file::to_toml(self)
+        let is_of_factory = |name: &str, preset: &Preset| Preset::find(name).is_ok_and(|factory| factory == preset);
+        kit_file::to_toml(self, &|name, preset| !is_of_factory(name, preset))
+    }
+
+    /// As [`KitPreset::to_toml`], but with all of its presets: it stays as it is if a later version has others in its factory.
+    pub fn to_whole_toml(&self) -> String {
+        kit_file::to_toml(self, &|_, _| true)
     }
 }
 

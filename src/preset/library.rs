@@ -61,23 +61,23 @@ impl Library {
         paths
     }
 
-    /// Saves a preset. A file that has a preset of this name is replaced, if told so; a new one is named after the preset, with
-    /// a number if a sound of another name has that file. The file is written under a temporary name and renamed, so that it
-    /// is never half-written. Returns its path.
+    /// Saves a preset, or a kit with its presets in it. A file that has a sound of this name is replaced, if told so; a new one is
+    /// named after the sound, with a number if a sound of another name has that file. The file is written under a temporary name and
+    /// renamed, so that it is never half-written. Returns its path.
     ///
     /// # Errors
     /// [`Error::Value`] for the name of a factory sound or of a file, by which it would not be found again, [`Error::Exists`] if a
-    /// preset of this name exists and is not to be replaced, [`Error::Format`] if the preset could not be read
+    /// sound of this name exists and is not to be replaced, [`Error::Format`] if the sound could not be read
     /// again, [`Error::Io`] if it cannot be written.
-    pub fn save(&self, preset: &Preset, replace: bool) -> Result<PathBuf> {
-        let text = text_of(preset)?;
-        let stem = file_stem(&preset.name);
+    pub fn save(&self, sound: &Playable, replace: bool) -> Result<PathBuf> {
+        let text = text_of(sound)?;
+        let stem = file_stem(sound.name());
         let folder = self.presets_folder();
         let place = |number: u32| match number {
             1 => folder.join(format!("{stem}.toml")),
             number => folder.join(format!("{stem}-{number}.toml")),
         };
-        let is_it = |path: &PathBuf| matches!(read(path), Ok(Playable::Preset(found)) if found.name.eq_ignore_ascii_case(&preset.name));
+        let is_it = |path: &PathBuf| read(path).is_ok_and(|found| found.name().eq_ignore_ascii_case(sound.name()));
         let paths = self.paths();
         let numbers = 1..=paths.len() as u32 + 1;
         // A file of any name may have it. If there are copies, the usual name comes first.
@@ -92,17 +92,15 @@ impl Library {
         Ok(path)
     }
 
-    /// Renames a preset of the library, and its file accordingly. Returns the file's new path.
+    /// Renames a sound of the library, and its file accordingly. Returns the file's new path.
     ///
     /// # Errors
-    /// As [`Library::save`]; [`Error::Value`] if the file is not in the library or has no single preset.
+    /// As [`Playable::read`] and [`Library::save`]; [`Error::Value`] if the file is not in the library.
     pub fn rename(&self, path: &Path, name: &str) -> Result<PathBuf> {
         self.check_own(path)?;
-        let Playable::Preset(preset) = read(path)? else {
-            return Err(Error::value(path.display().to_string(), "expected a preset: a kit keeps its name"));
-        };
-        let is_same = preset.name.eq_ignore_ascii_case(name);
-        let renamed = Preset { name: name.to_owned(), ..preset };
+        let mut renamed = read(path)?;
+        let is_same = renamed.name().eq_ignore_ascii_case(name);
+        renamed.rename(name);
         if is_same {
             // Keep its file: another file may have a preset of the same name, which must not be replaced.
             write_whole(path, text_of(&renamed)?.as_bytes(), true)?;
@@ -113,31 +111,28 @@ impl Library {
         Ok(saved)
     }
 
-    /// Copies a preset file into the library. If its name is taken, a number is added to the name. Returns the preset
-    /// as saved, and the path of its new file.
+    /// Copies a preset into the library, or a kit with its presets. If its name is taken, a number is added to the name. Returns the
+    /// sound as saved, and the path of its new file.
     ///
     /// # Errors
-    /// As [`Playable::read`] and [`Library::save`]; [`Error::Value`] for a kit, which needs the files of its presets.
-    pub fn import(&self, path: &Path) -> Result<(Preset, PathBuf)> {
-        let Playable::Preset(mut preset) = read(path)? else {
-            let message = "a kit needs the files of its presets: expected a single preset";
-            return Err(Error::value(path.display().to_string(), message));
-        };
-        let own = preset.name.clone();
+    /// As [`Playable::read`] and [`Library::save`].
+    pub fn import(&self, path: &Path) -> Result<(Playable, PathBuf)> {
+        let mut sound = read(path)?;
+        let own = sound.name().to_owned();
         let names: Vec<String> =
             self.paths().iter().filter_map(|path| read(path).ok()).map(|found| found.name().to_owned()).collect();
         // Both factory sounds and sounds of the library may have this name.
         let is_taken =
             |name: &str| Playable::find(name).is_ok() || names.iter().any(|other| other.eq_ignore_ascii_case(name));
         let mut number = 2;
-        while is_taken(&preset.name) {
+        while is_taken(sound.name()) {
             let end = format!(" {number}");
             let kept: String = own.chars().take(MAX_LABEL - end.len()).collect();
-            preset.name = kept.trim_end().to_owned() + &end;
+            sound.rename(kept.trim_end().to_owned() + &end);
             number += 1;
         }
-        let place = self.save(&preset, false)?;
-        Ok((preset, place))
+        let place = self.save(&sound, false)?;
+        Ok((sound, place))
     }
 
     /// Checks that a file is one of the library's.
@@ -262,18 +257,18 @@ fn read(path: &Path) -> Result<Playable> {
     Playable::read(path, &mut open)
 }
 
-/// The text of a preset's file. The preset's name must be neither that of a factory sound nor a file name.
-fn text_of(preset: &Preset) -> Result<String> {
-    if Playable::find(&preset.name).is_ok() {
-        let message = format!("‘{}’ is a sound of the factory: expected another name", preset.name);
+/// The text of a sound's file. The sound's name must be neither that of a factory sound nor a file name.
+fn text_of(sound: &Playable) -> Result<String> {
+    let name = sound.name();
+    if Playable::find(name).is_ok() {
+        return Err(Error::value("name", format!("‘{name}’ is a sound of the factory: expected another name")));
+    }
+    if is_file_name(Path::new(name)) {
+        let message = format!("‘{name}’ would be taken for a file: expected a name without / and .toml");
         return Err(Error::value("name", message));
     }
-    if is_file_name(Path::new(&preset.name)) {
-        let message = format!("‘{}’ would be taken for a file: expected a name without / and .toml", preset.name);
-        return Err(Error::value("name", message));
-    }
-    let text = preset.to_toml();
-    Preset::parse(&text, &preset.name)?;
+    let text = sound.to_toml();
+    Playable::parse(&text, name, &mut |name| Preset::find(name).cloned())?;
     Ok(text)
 }
 

@@ -6,8 +6,8 @@ use crate::error::{Error, Result};
 use std::io::Read;
 use std::path::Path;
 
-/// Maximum size of a preset file in bytes.
-pub const MAX_FILE_SIZE: u64 = 1 << 20;
+/// Maximum size of a preset or kit file in bytes: a kit may have 128 presets in it.
+pub const MAX_FILE_SIZE: u64 = 16 << 20;
 
 impl Preset {
     /// Reads a preset. `origin` names the text in errors: a path, or another source.
@@ -62,7 +62,7 @@ pub(super) fn text(reader: impl Read, origin: &str) -> Result<String> {
     let mut bytes = Vec::new();
     reader.take(MAX_FILE_SIZE + 1).read_to_end(&mut bytes).map_err(|source| Error::io(origin, source))?;
     if bytes.len() as u64 > MAX_FILE_SIZE {
-        return Err(Error::format(origin, "too large for a preset: expected at most 1 MiB of TOML"));
+        return Err(Error::format(origin, "too large for a preset: expected at most 16 MiB of TOML"));
     }
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
@@ -83,7 +83,7 @@ mod tests {
         let path = directory.path().join("a.toml");
         for (bytes, expected) in [
             (b"name = \"\xff\"".to_vec(), "expected UTF-8 text, but byte 8 is not"),
-            (vec![b'#'; MAX_FILE_SIZE as usize + 1], "expected at most 1 MiB"),
+            (vec![b'#'; MAX_FILE_SIZE as usize + 1], "expected at most 16 MiB"),
             (b"".to_vec(), "no ‘format’"),
         ] {
             std::fs::write(&path, bytes).unwrap();

@@ -60,8 +60,8 @@ fn presets() {
     }
     sandbox.write("bad.toml", [0xff, 0xfe]);
     sandbox.fails("render --note 60 --preset bad.toml -o out.wav", 1, "expected UTF-8");
-    sandbox.write("bad.toml", vec![b'#'; (1 << 20) + 1]);
-    sandbox.fails("render --note 60 --preset bad.toml -o out.wav", 1, "expected at most 1 MiB");
+    sandbox.write("bad.toml", vec![b'#'; (16 << 20) + 1]);
+    sandbox.fails("render --note 60 --preset bad.toml -o out.wav", 1, "expected at most 16 MiB");
     sandbox.fails("render --note 60 --preset none.toml -o out.wav", 1, "none.toml: ");
     sandbox.fails("render --note 60 --preset kcik -o out.wav", 1, "the nearest is ‘Kick’");
     sandbox.fails("presets show kcik", 1, "the nearest is ‘Kick’");

@@ -3,7 +3,7 @@
 use crate::Sandbox;
 use sprung::params::{PARAMS, Unit};
 use sprung::preset::library::Library;
-use sprung::preset::{KitPreset, Preset};
+use sprung::preset::{KitPreset, Playable, Preset};
 use std::process::{Command, Stdio};
 
 /// The rows of the manual's tables of parameters: the page, the parameter's id, and the cell with its range and default.
@@ -105,7 +105,7 @@ fn sounds_of_the_user_have_names_too() {
         _ => "data/sprung",
     };
     let library = Library::at(sandbox.path(folder));
-    library.save(&mine, false).unwrap();
+    library.save(&Playable::Preset(mine.clone()), false).unwrap();
     std::fs::write(library.presets_folder().join("broken.toml"), "x").unwrap();
     let output = sandbox.sprung("presets list --own --json").assert().success().get_output().clone();
     let listed: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();

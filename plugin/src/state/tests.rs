@@ -79,15 +79,20 @@ fn a_kit_is_kept_with_its_presets() {
     assert_eq!(other.state(), odd(), "a preset after a kit");
 
     let mut saved: Map<String, Value> = serde_json::from_str(&json).unwrap();
-    saved["sounds"].as_object_mut().unwrap().remove("mine.toml");
-    saved["sounds"]["Kick"] = "format = 1\nname = \"Kick\"\n[params]\ngain = 99".into();
+    let text = saved["kit"].as_str().unwrap();
+    let text = text.replace("[sounds.\"mine.toml\"", "[sounds.\"none.toml\"");
+    saved["kit"] = change(&text, "[sounds.Kick.params]\n", "[sounds.Kick.params]\ngain_boost = 99\n").into();
     saved["values"]["mode"] = 7.into();
     let Read { state, complaints } = State::parse(&serde_json::to_string(&saved).unwrap()).unwrap();
     let Playable::Kit(kit) = &state.playable else { panic!("a kit") };
     assert_eq!(kit.pads.iter().map(|(key, _)| *key).collect::<Vec<_>>(), [36, 40]);
     assert_eq!((state.values.get(Param::Mode), state.values.get(Param::Voices)), (0.0, 3.0));
-    let starts =
-        ["keys[1].sound: preset: there is no factory preset", "‘Kick’: params.gain: 99 is out", "values.mode: ‘7’"];
+    let starts = [
+        "sounds.Kick: unknown key ‘params.gain_boost’",
+        "keys[1].sound: preset: there is no factory preset",
+        "sounds.none.toml: no key plays it",
+        "values.mode: ‘7’",
+    ];
     assert_eq!(complaints.len(), starts.len(), "{complaints:?}");
     assert!(complaints.iter().zip(starts).all(|(line, start)| line.starts_with(start)), "{complaints:?}");
 }

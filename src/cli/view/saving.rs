@@ -17,11 +17,11 @@ impl App {
             self.tell("the system does not say where your data is kept".to_owned());
             return None;
         };
-        let Some(preset) = self.preset(name) else {
-            self.tell("a kit is kept in its file: only single sounds are saved".to_owned());
+        let Some(sound) = self.sound(name) else {
+            self.tell("only presets, and kits of the list, are saved".to_owned());
             return None;
         };
-        match library.save(&preset, replace) {
+        match library.save(&sound, replace) {
             Ok(path) => {
                 self.catalogue = Catalogue::read(Some(library));
                 self.playing[usize::from(self.channel)].name = printable(name).into_owned();
@@ -39,23 +39,28 @@ impl App {
         }
     }
 
-    /// The channel's sound with its present values, as a preset of this name; none for a kit of several sounds.
-    fn preset(&self, name: &str) -> Option<Preset> {
+    /// The channel's sound with its present values, under this name; none for a kit that was not chosen from the list.
+    fn sound(&self, name: &str) -> Option<Playable> {
         let Playing { kit, values, listed, .. } = self.playing();
-        let [sound] = kit.sounds() else { return None };
-        let mut patch = sound.patch().clone();
-        patch.values = *values;
-        // A sound that was not chosen from the list may be in it too.
-        let is_it = |known: &&Arc<Listed>| match &known.playable {
-            Playable::Preset(preset) => preset.name == kit.name() && preset.patch.modes == patch.modes,
-            Playable::Kit(_) => false,
+        let mut sound = match listed.as_ref().map(|listed| &listed.playable) {
+            Some(Playable::Kit(kit)) => Playable::Kit(kit.clone().with_values(values)),
+            Some(Playable::Preset(preset)) => Playable::Preset(preset.clone()),
+            None => {
+                let [sound] = kit.sounds() else { return None };
+                // A sound that was not chosen from the list may be in it too.
+                let is_it = |known: &&Arc<Listed>| match &known.playable {
+                    Playable::Preset(preset) => preset.name == kit.name() && preset.patch.modes == sound.patch().modes,
+                    Playable::Kit(_) => false,
+                };
+                let known = self.catalogue.sounds.iter().find(is_it).map(|listed| listed.playable.clone());
+                known.unwrap_or_else(|| Playable::Preset(Preset::new(name, sound.patch().clone())))
+            }
         };
-        let listed = listed.as_ref().or_else(|| self.catalogue.sounds.iter().find(is_it));
-        let about = match listed.map(|listed| &listed.playable) {
-            Some(Playable::Preset(preset)) => preset.clone(),
-            Some(Playable::Kit(_)) => return None,
-            None => Preset::new(name, patch.clone()),
-        };
-        Some(Preset { name: name.to_owned(), patch, ..about })
+        if let (Playable::Preset(preset), [sound]) = (&mut sound, kit.sounds()) {
+            preset.patch = sound.patch().clone();
+            preset.patch.values = *values;
+        }
+        sound.rename(name);
+        Some(sound)
     }
 }

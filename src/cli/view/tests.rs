@@ -271,15 +271,18 @@ fn a_sound_is_saved_and_found_again() {
 }
 
 #[test]
-fn kits_are_played_and_not_saved() {
+fn kits_are_saved_with_their_presets() {
     let mut stand = Stand::new();
     stand.type_text("/acoustic kit");
     (0..2).for_each(|_| stand.press(KeyCode::Enter));
     assert_eq!(stand.app.playing().name, "Acoustic Kit");
     stand.type_text("W");
+    (0..40).for_each(|_| stand.press(KeyCode::Backspace));
+    stand.type_text("My Drums");
     stand.press(KeyCode::Enter);
-    assert!(stand.screen(100, 24).contains("only single sounds are saved"));
-    assert!(Library::at(stand.folder.path()).entries().is_empty());
+    let saved = Library::at(stand.folder.path()).entries().remove(0).playable.unwrap();
+    let Ok(Playable::Kit(kit)) = Playable::find("Acoustic Kit") else { panic!("it is there") };
+    assert_eq!((saved.name(), saved.kit().sounds().len()), ("My Drums", kit.sounds.len()));
 }
 
 #[test]

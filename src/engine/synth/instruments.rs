@@ -267,10 +267,9 @@ impl Instruments {
 fn value_of_sound<'a>(kit: &'a Kit, values: &'a Values) -> impl Fn(Param, f32) -> f32 + 'a {
     move |param, own| {
         let (info, value) = (param.info(), values.get(param));
-        let is_of_kit = matches!(param, Param::Voices | Param::Mode | Param::Priority | Param::Choke | Param::Limiter);
         match kit.is_single() {
             true => value,
-            false if is_of_kit => own,
+            false if param.is_of_kit() => own,
             false => moved(param, own, (info.normalise(value) - info.normalise(info.default)) as f32),
         }
     }

@@ -171,10 +171,9 @@ impl Details {
         let Some(library) = &sounds.library else {
             return Outcome::new("the system does not say where your data is kept", false);
         };
-        let Playable::Preset(preset) = controls.params.state().playable else {
-            return Outcome::new("a kit is kept in the project with its presets: only single presets are saved", false);
-        };
-        match library.save(&Preset { name: name.clone(), ..preset }, replace) {
+        let mut sound = controls.params.state().into_sound();
+        sound.rename(name.clone());
+        match library.save(&sound, replace) {
             Ok(path) => {
                 controls.params.rename(name);
                 controls.history.saved();

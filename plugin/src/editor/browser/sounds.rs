@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// A category of sounds in the browser.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) enum Category {
+pub(in crate::editor) enum Category {
     #[default]
     All,
     Favourites,
@@ -24,13 +24,13 @@ pub(super) enum Category {
 
 impl Category {
     /// All categories in their order.
-    pub(super) fn all() -> impl Iterator<Item = Self> {
+    pub(in crate::editor) fn all() -> impl Iterator<Item = Self> {
         let families = Family::ALL.iter().map(|family| Self::Family(*family));
         [Self::All, Self::Favourites, Self::Own, Self::Kits].into_iter().chain(families)
     }
 
     /// The name as shown to the user.
-    pub(super) fn name(self) -> String {
+    pub(in crate::editor) fn name(self) -> String {
         match self {
             Self::All => "All".to_owned(),
             Self::Favourites => "Favourites".to_owned(),
@@ -46,27 +46,27 @@ impl Category {
 }
 
 /// What tells a preset of the catalogue from others: its name, and the file of one of the user's.
-pub(super) type Place = (String, Option<PathBuf>);
+pub(in crate::editor) type Place = (String, Option<PathBuf>);
 
 /// The place of a preset; none for a kit.
-pub(super) fn place(sound: &Listed) -> Option<Place> {
+pub(in crate::editor) fn place(sound: &Listed) -> Option<Place> {
     matches!(sound.playable, Playable::Preset(_)).then(|| (sound.name().to_owned(), sound.path.clone()))
 }
 
 /// All sounds.
-pub(super) struct Sounds {
-    pub(super) library: Option<Library>,
+pub(in crate::editor) struct Sounds {
+    pub(in crate::editor) library: Option<Library>,
     catalogue: Catalogue,
     favourites: BTreeSet<String>,
     /// The bodies of presets, by their places in memory.
     figures: BTreeMap<usize, Figure>,
     /// Files of the user that could not be read, and why.
-    pub(super) broken: Vec<String>,
+    pub(in crate::editor) broken: Vec<String>,
 }
 
 impl Sounds {
     /// Reads the factory's sounds and the user's.
-    pub(super) fn read(library: Option<Library>) -> Self {
+    pub(in crate::editor) fn read(library: Option<Library>) -> Self {
         let catalogue = Catalogue::read(library.as_ref());
         let mut broken: Vec<String> = catalogue.broken.iter().map(ToString::to_string).collect();
         let favourites = library.as_ref().map(Library::favourites).transpose().unwrap_or_else(|error| {
@@ -85,22 +85,22 @@ impl Sounds {
     }
 
     /// The picture of a preset's body; none for a kit.
-    pub(super) fn figure(&self, sound: &Arc<Listed>) -> Option<&Figure> {
+    pub(in crate::editor) fn figure(&self, sound: &Arc<Listed>) -> Option<&Figure> {
         self.figures.get(&Arc::as_ptr(sound).addr())
     }
 
-    pub(super) fn is_favourite(&self, sound: &Listed) -> bool {
+    pub(in crate::editor) fn is_favourite(&self, sound: &Listed) -> bool {
         self.favourites.contains(sound.name())
     }
 
     /// All sounds.
-    pub(super) fn all(&self) -> impl Iterator<Item = &Arc<Listed>> {
+    pub(in crate::editor) fn all(&self) -> impl Iterator<Item = &Arc<Listed>> {
         self.catalogue.sounds.iter()
     }
 
     /// The sounds of a category that contain all words; those with the words in their names come first, and those in `like` in the
     /// order of these.
-    pub(super) fn find(&self, category: Category, words: &str, like: &[Place]) -> Vec<Arc<Listed>> {
+    pub(in crate::editor) fn find(&self, category: Category, words: &str, like: &[Place]) -> Vec<Arc<Listed>> {
         let rank = |sound: &Listed| {
             let own = place(sound)?;
             like.iter().position(|place| *place == own)
@@ -122,7 +122,7 @@ impl Sounds {
     }
 
     /// Adds a sound to the favourites or removes it. Returns a message if this cannot be stored.
-    pub(super) fn set_favourite(&mut self, name: &str, is_favourite: bool) -> Option<String> {
+    pub(in crate::editor) fn set_favourite(&mut self, name: &str, is_favourite: bool) -> Option<String> {
         if is_favourite {
             self.favourites.insert(name.to_owned());
         } else {
@@ -142,7 +142,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let library = Library::at(folder.path());
         let own = Preset { name: "My Glass".to_owned(), ..Preset::find("Marimba").unwrap().clone() };
-        library.save(&own, false).unwrap();
+        library.save(&Playable::Preset(own), false).unwrap();
         std::fs::write(library.presets_folder().join("broken.toml"), "x").unwrap();
         let mut sounds = Sounds::read(Some(library.clone()));
         let names = |sounds: &Sounds, category, words: &str| -> Vec<String> {

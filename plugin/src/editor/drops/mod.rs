@@ -7,7 +7,6 @@ use crate::editor::controls::Controls;
 use crate::editor::pages::tuning;
 use crate::files;
 use egui::Ui;
-use sprung::preset::Playable;
 use sprung::preset::library::Library;
 use std::path::{Path, PathBuf};
 
@@ -44,26 +43,20 @@ fn is_own(path: &Path, library: &Library) -> bool {
     folder.is_some() && folder == library.presets_folder().canonicalize().ok()
 }
 
-/// Loads a preset or kit. A preset from elsewhere is copied to the user's folder, if there is one.
+/// Loads a preset or kit. One from elsewhere is copied to the user's folder, if there is one.
 fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
-    let playable = match files::read(&path.display().to_string()) {
-        Ok(read) => read,
-        Err(error) => return error.to_string(),
+    let read = match library.filter(|library| !is_own(path, library)) {
+        Some(library) => library.import(path).map(|(sound, place)| {
+            let message = format!("imported as “{}”, {}", sound.name(), place.display());
+            (sound, message)
+        }),
+        None => files::read(&path.display().to_string()).map(|sound| (sound, format!("loaded {}", path.display()))),
     };
-    let (playable, message) = match (playable, library) {
-        (Playable::Preset(_), Some(library)) if !is_own(path, library) => match library.import(path) {
-            Ok((preset, place)) => {
-                let message = format!("imported as “{}”, {}", preset.name, place.display());
-                (Playable::Preset(preset), message)
-            }
-            Err(error) => return error.to_string(),
-        },
-        (Playable::Kit(kit), _) => {
-            let message = format!("loaded {}; a kit’s file stays where it is", path.display());
-            (Playable::Kit(kit), message)
+    match read {
+        Ok((sound, message)) => {
+            controls.history.load(sound, controls.params, controls.host);
+            message
         }
-        (preset, _) => (preset, format!("loaded {}", path.display())),
-    };
-    controls.history.load(playable, controls.params, controls.host);
-    message
+        Err(error) => error.to_string(),
+    }
 }
