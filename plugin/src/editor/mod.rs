@@ -6,7 +6,8 @@
 //! | `theme` | colours, sizes and fonts; the places of the parts |
 //! | `play` | the page it opens with: the body large, what moves it, what it is, what it stands on, macros |
 //! | `modes`, `displays`, `body` | the upper half of *Sound*: the modes, moving pictures, the moving body; also the body's page |
-//! | `pages`, `routes` | the lower half: tabs, sections of parameters, kit, tuning, devices; routes, also learnt |
+//! | `pages`, `routes` | the lower half: tabs, sections of parameters, tuning, devices; routes, also learnt |
+//! | `kit` | the pads of a kit, the sounds that are put on them, and the chosen pad; all keys of a preset |
 //! | `keyboard` | the piano, and whatever else plays a key |
 //! | `browser`, `manual`, `drops` | over the window: sounds to find and save, the manual, fits of dropped recordings |
 //! | `widgets` | what all of these are made of |
@@ -35,6 +36,7 @@ mod displays;
 mod drops;
 pub(crate) mod host;
 mod keyboard;
+mod kit;
 mod lamps;
 mod manual;
 mod modes;

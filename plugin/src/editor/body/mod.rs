@@ -4,7 +4,7 @@ pub(super) mod edit;
 pub(super) mod face;
 pub(super) mod figure;
 pub(super) mod form;
-mod numbers;
+pub(super) mod numbers;
 pub(super) mod origin;
 pub(super) mod page;
 pub(super) mod shape;

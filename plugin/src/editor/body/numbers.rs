@@ -161,7 +161,7 @@ impl Number {
 }
 
 /// A value in a unit, in few letters; [`sprung::units::number_in_unit`] reads it again.
-pub(super) fn written(value: f64, unit: &str) -> String {
+pub(crate) fn written(value: f64, unit: &str) -> String {
     let (value, unit) = match unit {
         "m" if value < 0.01 => (value * 1000.0, "mm"),
         "m" if value < 1.0 => (value * 100.0, "cm"),

@@ -1,24 +1,22 @@
 //! The origin of a sound's modes: a body, two joined bodies, or a table without a body.
 
-use crate::editor::controls::shown::Shown;
-use crate::loaded::Loaded;
+use crate::editor::controls::shown::{Shown, Subject};
 use sprung::patch::ModeTable;
 use sprung::preset::{body_of_modes, modes_of_body, modes_of_pair, pair_of_modes};
 use sprung::sound::bodies::{Body, Model, Pitch};
 use sprung::sound::pairs::{Link, Pair};
-use std::sync::Arc;
 
 /// The origin of the loaded sound's modes, read again only when another sound is loaded.
 #[derive(Default)]
-pub(crate) struct OriginShown(Option<(Arc<Loaded>, Origin)>);
+pub(crate) struct OriginShown(Option<(Subject, Origin)>);
 
 impl OriginShown {
     pub(crate) fn get(&mut self, shown: &Shown) -> Origin {
         match &self.0 {
-            Some((loaded, origin)) if Arc::ptr_eq(loaded, shown.loaded()) => origin.clone(),
+            Some((subject, origin)) if *subject == shown.subject() => origin.clone(),
             _ => {
                 let origin = Origin::of(&shown.patch().modes);
-                self.0 = Some((shown.loaded().clone(), origin.clone()));
+                self.0 = Some((shown.subject(), origin.clone()));
                 origin
             }
         }

@@ -3,15 +3,16 @@
 use super::edit::BodyEdit;
 use super::numbers::{Number, Part, written};
 use super::origin::{Origin, OriginShown, model_name};
+use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
-use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::Audition;
 use crate::editor::theme::{GAP, PADDING, SMALL, TEXT};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
+use crate::editor::widgets::number;
 use crate::editor::widgets::text::{line, paragraph};
 use crate::link::Link;
-use egui::{Align2, DragValue, Id, Rect, Response, Role, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, vec2};
+use egui::{Align2, Id, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use sprung::preset::LINK_KINDS;
 use sprung::sound::bodies::{MATERIALS, Model};
 use sprung::units::number_in_unit;
@@ -22,7 +23,7 @@ const SIDE: f32 = 188.0;
 const ROW: f32 = 25.0;
 const NAMES: f32 = 54.0;
 /// Size of a number with its name.
-const CELL: [f32; 2] = [88.0, 36.0];
+const CELL: [f32; 2] = [88.0, number::HEIGHT];
 /// Largest width of a number's cell, where there is room.
 const WIDEST: f32 = 124.0;
 /// Shown in place of a model if there is none.
@@ -225,31 +226,18 @@ impl BodyPage {
     }
 }
 
-/// Shows a number with its name; it can be dragged or typed. Returns its new value.
+/// Shows a number. Returns its new value.
 fn show(ui: &mut Ui, cell: Rect, number: &Number, controls: &mut Controls) -> (Response, f64) {
-    let palette = controls.palette;
-    let name = Rect::from_min_size(cell.min, vec2(cell.width() - 4.0, 13.0));
-    let field = Rect::from_min_size(cell.min + vec2(0.0, 14.0), vec2(cell.width() - 6.0, 18.0));
-    line(ui.painter(), name, Align2::LEFT_CENTER, &number.title(), SMALL, palette.muted);
-    let (unit, [min, max]) = (number.unit, number.range);
-    let mut value = number.value;
-    let widget = DragValue::new(&mut value)
-        .range(min..=max)
-        .speed(number.speed())
-        .update_while_editing(false)
-        .custom_formatter(move |value, _| written(value, unit))
-        .custom_parser(move |text| number_in_unit(unit, text));
-    let response = ui.put(field, widget);
-    if number.is_whole() {
-        value = value.round();
-    }
-    response.widget_info(|| {
-        let mut about = WidgetInfo::labeled(Role::SpinButton, true, number.title());
-        about.current_text_value = Some(written(value, unit));
-        about
-    });
-    if response.hovered() || response.has_focus() {
-        *controls.hint = Hint::new(format!("{} {}", number.title(), written(value, unit)), number.help());
-    }
-    (response, value)
+    let (title, unit) = (number.title(), number.unit);
+    let field = number::Number {
+        title: &title,
+        help: number.help(),
+        value: number.value,
+        range: number.range,
+        speed: number.speed(),
+        is_whole: number.is_whole(),
+        written: &|value| written(value, unit),
+        read: &|text| number_in_unit(unit, text),
+    };
+    field.show(ui, cell, controls)
 }

@@ -6,7 +6,7 @@ use super::form::Form;
 use super::origin::Origin;
 use super::shape::BodyShape;
 use crate::editor::controls::gestures::touch;
-use crate::editor::controls::shown::Shown;
+use crate::editor::controls::shown::{Shown, Subject};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::modes::table::replace;
@@ -38,7 +38,7 @@ struct Drag {
 /// The picture's state.
 #[derive(Default)]
 pub(crate) struct BodyView {
-    shape: Option<(Arc<Loaded>, BodyShape)>,
+    shape: Option<(Subject, BodyShape)>,
     /// Phase of each mode, in radians.
     angles: Vec<f32>,
     /// The greatest amplitude since the body was at rest.
@@ -70,15 +70,15 @@ impl BodyView {
             audition.release(controls.params.link());
         }
         let mut shape = match self.shape.take() {
-            Some((loaded, shape)) if Arc::ptr_eq(&loaded, shown.loaded()) => shape,
+            Some((subject, shape)) if subject == shown.subject() => shape,
             _ => BodyShape::of(&shown.patch().modes, shown.guide().family),
         };
-        let mut loaded = shown.loaded().clone();
+        let mut subject = shown.subject();
         if strike(&shape, shown, controls).is_some() {
             self.touch(ui, rect, &mut shape, shown, audition, controls);
             // While the strike is dragged, the shapes stay as they are.
             if let Some(drag) = &self.drag {
-                loaded = drag.loaded.clone();
+                subject.0 = drag.loaded.clone();
             }
         }
         let amplitudes = self.advance(controls.seconds, &shape, energies);
@@ -88,7 +88,7 @@ impl BodyView {
         let place = self.drag.as_ref().map(|drag| drag.point).or(strike(&shape, shown, controls));
         face::paint(ui.painter(), rect, &shape.figure, &moved, place, controls.palette);
         let caption = shape.caption.clone();
-        self.shape = Some((loaded, shape));
+        self.shape = Some((subject, shape));
         caption
     }
 

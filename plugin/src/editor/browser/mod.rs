@@ -3,7 +3,7 @@
 mod details;
 mod likeness;
 mod list;
-mod sounds;
+pub(super) mod sounds;
 mod tags;
 
 use crate::editor::controls::Controls;
@@ -85,6 +85,11 @@ impl Browser {
             Aim::Save => self.details.take_name(),
         }
         self.sounds = None;
+    }
+
+    /// All sounds, read if they may have changed.
+    pub(super) fn sounds(&mut self) -> &Sounds {
+        self.sounds.get_or_insert_with(|| Sounds::read(self.library.clone()))
     }
 
     /// Shows the browser. Returns a message, and whether the user is done here.

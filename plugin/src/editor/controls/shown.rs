@@ -3,7 +3,7 @@
 use crate::loaded::Loaded;
 use crate::params::SprungParams;
 use sprung::patch::Patch;
-use sprung::preset::{Guide, OwnTuning, Playable, Preset};
+use sprung::preset::{Guide, KitPreset, OwnTuning, Playable, Preset};
 use sprung::sound::Pad;
 use std::sync::Arc;
 
@@ -12,6 +12,18 @@ pub(crate) struct Shown {
     loaded: Arc<Loaded>,
     playable: Playable,
     guide: Guide,
+    /// Number of the sound whose modes and body are shown: in a kit, that of the pad that was struck or chosen last.
+    sound: usize,
+}
+
+/// What is shown of what is loaded, so that it is read again only when it is another.
+#[derive(Clone)]
+pub(crate) struct Subject(pub(crate) Arc<Loaded>, usize);
+
+impl PartialEq for Subject {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0) && self.1 == other.1
+    }
 }
 
 impl Shown {
@@ -19,23 +31,36 @@ impl Shown {
         // Read first: a sound that is loaded meanwhile is then noticed at the next refresh.
         let loaded = params.loaded();
         let playable = params.state().playable;
-        let guide = match &playable {
-            Playable::Preset(preset) => preset.guide.clone(),
-            // The key of the sound whose modes and body are shown.
+        let mut shown = Self { loaded, playable, guide: Guide::default(), sound: 0 };
+        match &shown.playable {
+            Playable::Preset(preset) => shown.guide = preset.guide.clone(),
             Playable::Kit(_) => {
-                let shows = |key: &u8| loaded.kit.pad(*key).is_some_and(|pad| pad.sound == 0);
-                let guide = Guide::default();
-                Guide { home: (0..128).find(shows).unwrap_or(guide.home), ..guide }
+                let first = (0..128).find(|key| shown.loaded.kit.pad(*key).is_some());
+                shown.follow(first.unwrap_or(shown.guide.home));
             }
-        };
-        Self { loaded, playable, guide }
+        }
+        shown
+    }
+
+    /// Shows the sound of a kit's pad, if the key has one.
+    pub(crate) fn follow(&mut self, key: u8) {
+        if let (Playable::Kit(_), Some(pad)) = (&self.playable, self.loaded.kit.pad(key)) {
+            (self.sound, self.guide.home) = (pad.sound, key);
+        }
     }
 
     /// Reads the sound again if another one was loaded.
     pub(crate) fn refresh(&mut self, params: &SprungParams) {
         if !Arc::ptr_eq(&self.loaded, &params.loaded()) {
+            let before = self.kit().map(|_| self.guide.home);
             *self = Self::new(params);
+            before.into_iter().for_each(|key| self.follow(key));
         }
+    }
+
+    /// What is shown.
+    pub(crate) fn subject(&self) -> Subject {
+        Subject(self.loaded.clone(), self.sound)
     }
 
     /// The sound with exact values, as it was loaded.
@@ -68,14 +93,22 @@ impl Shown {
         }
     }
 
-    /// The patch; for a kit, that of its first sound.
+    /// The patch; for a kit, that of the sound whose modes are shown.
     pub(crate) fn patch(&self) -> &Patch {
-        self.loaded.kit.sounds()[0].patch()
+        self.loaded.kit.sounds()[self.sound].patch()
+    }
+
+    /// The kit; none for a preset.
+    pub(crate) fn kit(&self) -> Option<&KitPreset> {
+        match &self.playable {
+            Playable::Preset(_) => None,
+            Playable::Kit(kit) => Some(kit),
+        }
     }
 
     /// Whether the note of a key is of the sound whose modes are shown.
     pub(crate) fn shows(&self, key: u8) -> bool {
-        self.loaded.kit.pad(key).is_some_and(|pad| pad.sound == 0)
+        self.loaded.kit.pad(key).is_some_and(|pad| pad.sound == self.sound)
     }
 
     /// Family and tags of the sound.
@@ -86,7 +119,39 @@ impl Shown {
                 let tags = preset.tags.iter().filter(|tag| Some(*tag) != family.as_ref()).cloned();
                 family.clone().into_iter().chain(tags).collect::<Vec<_>>().join("  ")
             }
-            Playable::Kit(kit) => format!("kit  {}", kit.tags.join("  ")),
+            Playable::Kit(kit) => {
+                let tags = kit.tags.iter().map(String::as_str).filter(|tag| *tag != "kit");
+                std::iter::once("kit").chain(tags).collect::<Vec<_>>().join("  ")
+            }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::{State, VIEW};
+
+    #[test]
+    fn a_kit_shows_the_pad_that_was_chosen_last() {
+        let params = SprungParams::default();
+        params.load(State::new(Playable::find("Acoustic Kit").unwrap(), 0, VIEW).into());
+        let mut shown = Shown::new(&params);
+        let first = shown.subject();
+        for key in [36, 49] {
+            shown.follow(key);
+            let pad = shown.loaded().kit.pad(key).unwrap().sound;
+            assert_eq!(shown.patch(), shown.loaded().kit.sounds()[pad].patch());
+            assert!(shown.shows(key) && shown.guide().home == key && shown.subject() != first);
+        }
+        shown.follow(0);
+        assert_eq!(shown.guide().home, 49, "there is no pad");
+        params.load(State::new(Playable::find("Brush Kit").unwrap(), 0, VIEW).into());
+        shown.refresh(&params);
+        assert!(shown.shows(49), "another kit shows the same pad");
+        params.load(State::new(Playable::find("Marimba").unwrap(), 0, VIEW).into());
+        shown.refresh(&params);
+        shown.follow(36);
+        assert_eq!(shown.guide().home, 60, "a preset is one sound");
     }
 }

@@ -113,7 +113,7 @@ impl KeyGrid {
 }
 
 /// The velocity of a click on a cell, as on the keyboard.
-fn velocity(cell: Rect, at: Pos2) -> f32 {
+pub(crate) fn velocity(cell: Rect, at: Pos2) -> f32 {
     ((at.y - cell.top()) / cell.height()).clamp(0.05, 1.0)
 }
 

@@ -4,15 +4,15 @@ use crate::link::{Link, Touch};
 
 /// The key that the mouse holds.
 #[derive(Default)]
-pub(super) struct HeldKey(Option<u8>);
+pub(crate) struct HeldKey(Option<u8>);
 
 impl HeldKey {
-    pub(super) fn key(&self) -> Option<u8> {
+    pub(crate) fn key(&self) -> Option<u8> {
         self.0
     }
 
     /// Plays the touched key with this velocity, and releases the previous one.
-    pub(super) fn follow(&mut self, touched: Option<(u8, f32)>, link: &Link) {
+    pub(crate) fn follow(&mut self, touched: Option<(u8, f32)>, link: &Link) {
         if touched.map(|(key, _)| key) == self.0 {
             return;
         }
@@ -24,7 +24,7 @@ impl HeldKey {
     }
 
     /// Releases the key.
-    pub(super) fn release(&mut self, link: &Link) {
+    pub(crate) fn release(&mut self, link: &Link) {
         if let Some(key) = self.0.take() {
             link.play(Touch::Up { key });
         }

@@ -3,5 +3,5 @@
 pub(super) mod audition;
 pub(super) mod computer;
 pub(super) mod grid;
-mod held_key;
+pub(super) mod held_key;
 pub(super) mod piano;

@@ -1,8 +1,7 @@
-//! The way of the sound and the page of its selected part: sections of parameters, the body, the kit's keys, the tuning, the devices.
+//! The way of the sound and the page of its selected part: sections of parameters, the body, the tuning, the devices.
 
 mod curves;
 mod devices;
-mod kit;
 mod outlines;
 pub(super) mod path;
 mod sections;
@@ -12,7 +11,6 @@ mod voices;
 use crate::editor::body::page::BodyPage;
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
-use crate::editor::keyboard::grid::KeyGrid;
 use crate::editor::lamps;
 use crate::editor::routes;
 use crate::editor::theme::GAP;
@@ -26,8 +24,8 @@ use sprung::params::PARAMS;
 use tuning::TuningPage;
 
 /// The manual's page for each page, in their order.
-const TOPICS: [&str; 10] =
-    ["exciters", "bodies", "modulation", "modulation", "space", "tuning", "bodies", "kits", "tuning", "window"];
+const TOPICS: [&str; 9] =
+    ["exciters", "bodies", "modulation", "modulation", "space", "tuning", "bodies", "tuning", "window"];
 /// Side of the button of the manual.
 const HELP: f32 = 22.0;
 /// Smallest width at which the voices fit beside the page's sections.
@@ -48,14 +46,13 @@ pub(super) struct Pages {
     part: Part,
     is_new: bool,
     body: BodyPage,
-    kit: KeyGrid,
     tuning: TuningPage,
 }
 
 impl Default for Pages {
     fn default() -> Self {
-        let (body, kit, tuning) = (BodyPage::default(), KeyGrid::default(), TuningPage::default());
-        Self { part: ("Mallet", 0), is_new: false, body, kit, tuning }
+        let (body, tuning) = (BodyPage::default(), TuningPage::default());
+        Self { part: ("Mallet", 0), is_new: false, body, tuning }
     }
 }
 
@@ -75,7 +72,6 @@ impl Pages {
     /// Releases the held keys.
     pub(super) fn release(&mut self, link: &Link) {
         self.body.release(link);
-        self.kit.release(link);
         self.tuning.grid.release(link);
     }
 
@@ -100,10 +96,6 @@ impl Pages {
                 None
             }
             "Model" => self.body.show(ui, rect, shown, controls),
-            "Kit" => {
-                kit::show(ui, rect, &mut self.kit, shown, down, controls);
-                None
-            }
             "Devices" => {
                 devices::show(ui, rect, controls);
                 None

@@ -10,15 +10,15 @@ use egui::{Align2, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, po
 pub(super) type Part = (&'static str, usize);
 
 /// The page of the devices, which only the standalone program has.
-const DEVICES: Part = ("Devices", 9);
+const DEVICES: Part = ("Devices", 8);
 
 /// Parts by panel and column. The sound takes its way through all panels but the last.
 const PATH: [&[&[Part]]; 5] = [
-    &[&[("Pitch", 1), ("Voices", 5), ("Tuning", 8)]],
+    &[&[("Pitch", 1), ("Voices", 5), ("Tuning", 7)]],
     &[&[("Mallet", 0), ("Pluck", 0), ("Noise", 0)], &[("Bow", 0), ("Breath", 0), ("Input", 0)]],
     &[&[("Body", 1), ("Model", 6), ("Rattle", 1)]],
     &[&[("Strings", 4), ("Tremolo", 4), ("Drive", 4)], &[("Tone", 4), ("Space", 4), ("Output", 4)]],
-    &[&[("Modulation", 2), ("Routes", 3), ("Kit", 7)]],
+    &[&[("Modulation", 2), ("Routes", 3)]],
 ];
 
 /// Width from which on the text is larger.

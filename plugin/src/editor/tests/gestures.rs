@@ -36,7 +36,7 @@ impl Stage {
         Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers }
     }
 
-    fn drag(&mut self, from: Pos2, by: egui::Vec2, modifiers: Modifiers) {
+    pub(super) fn drag(&mut self, from: Pos2, by: egui::Vec2, modifiers: Modifiers) {
         let half = Event::PointerMoved(from + by * 0.5);
         let (down, up) = (self.press(from, true, modifiers), self.press(from + by, false, modifiers));
         let events = [Event::PointerMoved(from), down, half, Event::PointerMoved(from + by), up];

@@ -8,6 +8,7 @@ mod dropped;
 mod fake_host;
 mod fitted;
 mod gestures;
+mod kits;
 mod learning;
 mod loading;
 mod mode_edits;

@@ -3,6 +3,7 @@
 pub(super) mod buttons;
 pub(super) mod choice;
 pub(super) mod knob;
+pub(super) mod number;
 pub(super) mod progress;
 pub(super) mod text;
 mod typing;

@@ -18,12 +18,15 @@ pub(in crate::editor) enum Face {
     Play,
     /// All of the sound: modes, pictures, every parameter.
     Sound,
+    /// The pads of a kit.
+    Kit,
 }
 
 /// The faces with their names and what they are for.
-const FACES: [(Face, &str, &str); 2] = [
+const FACES: [(Face, &str, &str); 3] = [
     (Face::Play, "Play", "The body, what moves it, and the few knobs that matter."),
-    (Face::Sound, "Sound", "All of the sound: its modes, moving pictures, every parameter, routes, kit and tuning."),
+    (Face::Sound, "Sound", "All of the sound: its modes, moving pictures, every parameter, routes and tuning."),
+    (Face::Kit, "Kit", "Sounds on pads: drag them there, and set pitch, level, place, choke group and output."),
 ];
 
 /// A request of the user's.

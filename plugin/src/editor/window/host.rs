@@ -83,6 +83,7 @@ impl Drop for Window {
         self.displays.release(link);
         self.play.release(link);
         self.pages.release(link);
+        self.kit.release(link);
         binding::stop(&self.params, &mut self.interaction.binding);
         if let Some(host) = self.host.take() {
             let end = || self.interaction.gestures.end(&self.params, &host);

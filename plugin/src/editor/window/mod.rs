@@ -19,6 +19,7 @@ use crate::editor::host::extent;
 use crate::editor::host::focus::Focus;
 use crate::editor::keyboard::computer::ComputerKeyboard;
 use crate::editor::keyboard::piano::Piano;
+use crate::editor::kit::KitPage;
 use crate::editor::manual::Manual;
 use crate::editor::modes::ModesView;
 use crate::editor::pages::{self, Pages};
@@ -71,6 +72,7 @@ pub(super) struct Window {
     face: Face,
     play: PlayPage,
     pages: Pages,
+    kit: KitPage,
     manual: Manual,
     fitting: Fitting,
     over: Option<Over>,
@@ -115,6 +117,7 @@ impl Window {
             face: Face::default(),
             play: PlayPage::default(),
             pages: Pages::default(),
+            kit: KitPage::default(),
             manual: Manual::default(),
             fitting: Fitting::default(),
             over: None,
@@ -169,6 +172,9 @@ impl Window {
             ui.ctx().request_repaint_after(FRAME);
         }
         let notes: Vec<_> = snapshot.notes.into_iter().flatten().filter(|_| !is_silent).collect();
+        if let Some(newest) = notes.first() {
+            self.shown.follow(newest.key);
+        }
         let mut hint = None;
         let name = params.name();
         let mut controls = Controls {
@@ -203,6 +209,9 @@ impl Window {
         if self.over.is_some() || self.face != Face::Play {
             self.play.leave(&mut controls);
         }
+        if self.over.is_some() || self.face != Face::Kit {
+            self.kit.leave(&mut controls);
+        }
         match self.over {
             Some(Over::Browser) => {
                 if let Some((message, is_done)) = self.browser.show(ui, layout.page(), &mut controls) {
@@ -218,6 +227,13 @@ impl Window {
             None if self.face == Face::Play => {
                 if let Some(message) = self.play.show(ui, layout.page(), &self.shown, &energies, &mut controls) {
                     self.message = message;
+                }
+            }
+            None if self.face == Face::Kit => {
+                let (page, others) = (layout.page(), (down, &mut self.browser));
+                if self.kit.show(ui, page, &mut self.shown, others, &mut controls).is_some() {
+                    self.manual.open("kits");
+                    self.over = Some(Over::Manual);
                 }
             }
             None => {

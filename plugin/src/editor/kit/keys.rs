@@ -1,9 +1,8 @@
-//! The page of a kit: the sound and the choke group of each key.
+//! All keys of a sound or kit, with the sound and the choke group of each.
 
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::grid::{Cell, KeyGrid};
-use crate::editor::theme::PADDING;
 use egui::{Rect, Ui};
 use sprung::params::Param;
 use sprung::sound::Pad;
@@ -11,7 +10,6 @@ use sprung::units::note_name;
 
 /// Shows the keys of a sound or kit; `down` has one bit for each held key.
 pub(super) fn show(ui: &mut Ui, rect: Rect, grid: &mut KeyGrid, shown: &Shown, down: u128, controls: &mut Controls) {
-    controls.palette.paint_panel(ui.painter(), rect);
     let kit = &shown.loaded().kit;
     let group = controls.value(Param::Choke.info());
     let choke = |pad: &Pad| kit.choke(pad, group);
@@ -28,19 +26,20 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, grid: &mut KeyGrid, shown: &Shown, d
             is_marked: marked == Some(group),
         }
     };
-    grid.show(ui, rect.shrink(PADDING), "Pad", down, &cell, controls);
+    grid.show(ui, rect, "Pad", down, &cell, controls);
     let Some(key) = grid.hovered() else { return };
-    let help = match kit.pad(key) {
-        None => "silent".to_owned(),
-        Some(pad) => {
-            let pitch = pad.pitch.map_or(String::new(), |pitch| format!("   at {}", note_name(pitch.round() as u8)));
-            let gain = if pad.gain_db == 0.0 { String::new() } else { format!("   {:+.1} dB", pad.gain_db) };
-            let group = match choke(pad) {
-                0 => String::new(),
-                group => format!("   choke group {group}: the outlined keys silence each other"),
-            };
-            format!("{}{pitch}{gain}{group}", shown.pad_name(pad))
-        }
+    *controls.hint = Hint::new(note_name(key), about(key, shown, group));
+}
+
+/// A pad in words. `group` is the value of the parameter of choke groups.
+pub(super) fn about(key: u8, shown: &Shown, group: f32) -> String {
+    let kit = &shown.loaded().kit;
+    let Some(pad) = kit.pad(key) else { return "silent".to_owned() };
+    let pitch = pad.pitch.map_or(String::new(), |pitch| format!("   at {}", note_name(pitch.round() as u8)));
+    let gain = if pad.gain_db == 0.0 { String::new() } else { format!("   {:+.1} dB", pad.gain_db) };
+    let group = match kit.choke(pad, group) {
+        0 => String::new(),
+        group => format!("   choke group {group}: the outlined keys silence each other"),
     };
-    *controls.hint = Hint::new(note_name(key), help);
+    format!("{}{pitch}{gain}{group}", shown.pad_name(pad))
 }

@@ -1,0 +1,221 @@
+//! The face of a kit: its pads, the sounds that can be put on them, and the chosen pad; of a preset, its keys.
+
+mod detail;
+mod edit;
+mod keys;
+mod pads;
+mod sounds;
+
+use crate::editor::body::figure::Figure;
+use crate::editor::body::shape::small_figure;
+use crate::editor::browser::Browser;
+use crate::editor::controls::shown::Shown;
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::keyboard::audition::{Audition, VELOCITY};
+use crate::editor::keyboard::grid::KeyGrid;
+use crate::editor::pages::Request;
+use crate::editor::theme::{GAP, PADDING, TEXT};
+use crate::editor::widgets::buttons::{Look, button, tab};
+use crate::editor::widgets::text::line;
+use crate::link::Link;
+use crate::loaded::Loaded;
+use detail::Detail;
+use edit::{change, name_of, put, set, swap};
+use egui::{Align2, Rect, Ui, pos2, vec2};
+use pads::{Carried, Deed, Pads};
+use sounds::SoundList;
+use sprung::preset::{Playable, Preset};
+use sprung::units::note_name;
+use std::sync::Arc;
+
+/// Shares of the width that sounds and the chosen pad have, and their least and greatest widths.
+const SIDES: [(f32, [f32; 2]); 2] = [(0.17, [130.0, 190.0]), (0.28, [180.0, 300.0])];
+/// Height of the row above the pads.
+const HEAD: f32 = 24.0;
+
+/// The state of the face.
+#[derive(Default)]
+pub(super) struct KitPage {
+    pads: Pads,
+    sounds: SoundList,
+    detail: Detail,
+    keys: KeyGrid,
+    shows_keys: bool,
+    carried: Option<Carried>,
+    audition: Audition,
+    /// The figures of the kit's sounds.
+    figures: Option<(Arc<Loaded>, Vec<Figure>)>,
+}
+
+impl KitPage {
+    /// Ends the user's action, and releases the held keys.
+    pub(super) fn leave(&mut self, controls: &mut Controls) {
+        self.detail.leave(controls);
+        self.carried = None;
+        self.release(controls.params.link());
+    }
+
+    /// Releases the held keys.
+    pub(super) fn release(&mut self, link: &Link) {
+        self.pads.release(link);
+        self.keys.release(link);
+        self.audition.release(link);
+    }
+
+    /// Shows the face; `down` has one bit for each held key.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        shown: &mut Shown,
+        (down, browser): (u128, &mut Browser),
+        controls: &mut Controls,
+    ) -> Option<Request> {
+        let palette = controls.palette;
+        self.audition.follow_time(ui.input(|input| input.time), controls.params.link());
+        let Some(kit) = shown.kit() else { return self.show_preset(ui, rect, shown, down, controls) };
+        if !kit.pads.iter().any(|(key, _)| *key == self.pads.chosen()) && self.figures.is_none() {
+            self.pads.choose(kit.pads.first().map_or(edit::FIRST, |(key, _)| *key));
+        }
+        let [left, right] = SIDES.map(|(share, [least, most])| (share * rect.width()).clamp(least, most));
+        let list = rect.with_max_x(rect.left() + left);
+        let detail = rect.with_min_x(rect.right() - right);
+        let middle = Rect::from_min_max(pos2(list.right() + GAP, rect.top()), pos2(detail.left() - GAP, rect.bottom()));
+        for panel in [list, detail, middle] {
+            palette.paint_panel(ui.painter(), panel);
+        }
+        let inner = middle.shrink(PADDING);
+        let (head, below) = inner.split_top_bottom_at_y(inner.top() + HEAD);
+        let request = self.head(ui, head, controls);
+        let clicked = self.sounds.show(ui, list.shrink(PADDING), browser.sounds(), &mut self.carried, controls);
+        let deed = if self.shows_keys {
+            keys::show(ui, below, &mut self.keys, shown, down, controls);
+            None
+        } else {
+            let figures = figures(&mut self.figures, shown);
+            self.pads.show(ui, below.expand(2.0), (shown, figures, down), &mut self.carried, controls)
+        };
+        let key = self.pads.chosen();
+        let figures = figures(&mut self.figures, shown);
+        let deed = self.detail.show(ui, detail.shrink(PADDING), key, (shown, figures), controls).or(deed);
+        shown.follow(key);
+        let put_here = clicked.map(|sound| Deed::Drop { carried: Carried::Sound(sound), key });
+        if let Some(deed) = put_here.or(deed) {
+            self.detail.leave(controls);
+            self.carry_out(ui, deed, shown, controls);
+        }
+        self.audition.request_end(ui);
+        request
+    }
+
+    /// Shows which pads are seen, and buttons to see others.
+    fn head(&mut self, ui: &Ui, rect: Rect, controls: &mut Controls) -> Option<Request> {
+        let palette = controls.palette;
+        let rect = rect.with_max_y(rect.bottom() - 4.0);
+        let cell = |left: f32, width: f32| Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()));
+        let [lowest, highest] = self.pads.keys();
+        for (place, (text, name, octaves)) in
+            [("‹", "Pads an octave lower", -1), ("›", "Pads an octave higher", 1)].into_iter().enumerate()
+        {
+            let at = cell(rect.left() + 112.0 * place as f32, 24.0);
+            if button(ui, at, text, name, Look::Plain, palette).clicked() {
+                self.pads.go(octaves);
+            }
+        }
+        let range = format!("{} to {}", note_name(lowest), note_name(highest));
+        line(ui.painter(), cell(rect.left() + 26.0, 84.0), Align2::CENTER_CENTER, &range, TEXT, palette.muted);
+        let help = cell(rect.right() - 22.0, 22.0);
+        let keys = cell(help.left() - 40.0, 38.0);
+        let pads = cell(keys.left() - 40.0, 38.0);
+        for (at, text, is_keys) in [(pads, "Pads", false), (keys, "Keys", true)] {
+            if tab(ui, at, text, self.shows_keys == is_keys, palette).clicked() {
+                self.release(controls.params.link());
+                self.shows_keys = is_keys;
+            }
+        }
+        show_help(ui, help, controls)
+    }
+
+    fn carry_out(&mut self, ui: &Ui, deed: Deed, shown: &Shown, controls: &mut Controls) {
+        match deed {
+            Deed::Drop { carried: Carried::Sound(sound), key } => {
+                let Playable::Preset(preset) = &sound.playable else { return };
+                change(format!("{} on {}", preset.name, name_of(key)), controls, |kit| put(kit, key, preset));
+                self.pads.choose(key);
+                self.audition.strike(key, VELOCITY, ui.input(|input| input.time), controls.params.link());
+            }
+            Deed::Drop { carried: Carried::Pad(from), key } if from != key => {
+                let copy = shown.kit().and_then(|kit| edit::pad(kit, from)).cloned();
+                if ui.input(|input| input.modifiers.command) {
+                    change(format!("copy {} to {}", name_of(from), note_name(key)), controls, |kit| {
+                        set(kit, key, copy.clone());
+                    });
+                } else {
+                    let what = format!("{} to {}", name_of(from), note_name(key));
+                    change(what, controls, |kit| swap(kit, [from, key]));
+                }
+                self.pads.choose(key);
+            }
+            Deed::Drop { .. } => {}
+            Deed::Empty(key) => {
+                // A kit without pads would be none.
+                if shown.kit().is_some_and(|kit| kit.pads.len() > 1) {
+                    change(format!("{} emptied", name_of(key)), controls, |kit| set(kit, key, None));
+                }
+            }
+        }
+    }
+
+    /// Shows all keys of a preset, and a button that makes a kit of it.
+    fn show_preset(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        shown: &Shown,
+        down: u128,
+        controls: &mut Controls,
+    ) -> Option<Request> {
+        let palette = controls.palette;
+        self.figures = None;
+        palette.paint_panel(ui.painter(), rect);
+        let (head, below) = rect.shrink(PADDING).split_top_bottom_at_y(rect.top() + PADDING + HEAD);
+        let make = Rect::from_min_size(head.min, vec2(96.0, HEAD - 4.0));
+        let response = button(ui, make, "Make a kit", "Make a kit of this sound", Look::Main, palette);
+        if response.hovered() {
+            *controls.hint =
+                Hint::new("Make a kit", "Puts this sound on a pad, and other sounds can be put beside it.");
+        }
+        if response.clicked()
+            && let Playable::Preset(preset) = controls.params.state().playable
+        {
+            self.release(controls.params.link());
+            controls.history.load(Playable::Kit(edit::kit_of(preset)), controls.params, controls.host);
+            return None;
+        }
+        let help = Rect::from_min_size(pos2(head.right() - 22.0, head.top()), vec2(22.0, HEAD - 4.0));
+        let says = Rect::from_min_max(make.right_top() + vec2(10.0, 0.0), pos2(help.left(), make.bottom()));
+        let text = format!("All keys play {}: those that suit it are bright.", controls.params.name());
+        line(ui.painter(), says, Align2::LEFT_CENTER, &text, TEXT, palette.muted);
+        keys::show(ui, below, &mut self.keys, shown, down, controls);
+        show_help(ui, help, controls)
+    }
+}
+
+/// The button of the manual.
+fn show_help(ui: &Ui, rect: Rect, controls: &mut Controls) -> Option<Request> {
+    let response = tab(ui, rect, "?", false, controls.palette);
+    if response.hovered() {
+        *controls.hint = Hint::new("Manual", "What this page does: kits");
+    }
+    response.clicked().then_some(Request::Manual)
+}
+
+/// The figures of the kit's sounds, made anew only when another kit is loaded.
+fn figures<'a>(kept: &'a mut Option<(Arc<Loaded>, Vec<Figure>)>, shown: &Shown) -> &'a [Figure] {
+    if kept.as_ref().is_none_or(|(loaded, _)| !Arc::ptr_eq(loaded, shown.loaded())) {
+        let sounds = shown.kit().map_or(&[][..], |kit| &kit.sounds);
+        let of = |(_, preset): &(String, Preset)| small_figure(&preset.patch.modes, preset.guide.family);
+        *kept = Some((shown.loaded().clone(), sounds.iter().map(of).collect()));
+    }
+    kept.as_ref().map_or(&[], |(_, figures)| figures)
+}

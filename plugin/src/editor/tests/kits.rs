@@ -1,0 +1,184 @@
+//! The face of a kit: pads that are struck, chosen, dragged, filled, set and emptied, and kits that are made and saved.
+
+use super::pictures::{Stage, compare, compare_small, facing, finish};
+use super::sounding::Band;
+use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
+use crate::editor::window::Face;
+use crate::link::Touch;
+use egui::{Event, Key, Modifiers, Pos2, Role, vec2};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use sprung::params::Param;
+use sprung::preset::library::Library;
+use sprung::preset::{KitPreset, Playable};
+use sprung::sound::Pad;
+
+fn at(sound: &str, size: [u32; 2], theme: Theme) -> Stage {
+    facing(Face::Kit, sound, size, 1.0, theme)
+}
+
+impl Stage {
+    fn kit(&self) -> KitPreset {
+        match self.params.state().playable {
+            Playable::Kit(kit) => kit,
+            Playable::Preset(preset) => panic!("{}", preset.name),
+        }
+    }
+
+    /// What a key plays, and how.
+    fn pad(&self, key: u8) -> Option<(String, Pad)> {
+        let kit = self.kit();
+        let (_, pad) = kit.pads.iter().find(|(own, _)| *own == key)?;
+        Some((kit.sounds[pad.sound].1.name.clone(), pad.clone()))
+    }
+
+    /// The middle of a pad.
+    fn place(&self, key: &str) -> Pos2 {
+        let is_it =
+            |label: Option<String>| label.is_some_and(|label| format!("{label} ").starts_with(&format!("Pad {key} ")));
+        let pads = self.harness.query_all_by_role(Role::Button);
+        let pad = pads.into_iter().find(|node| is_it(node.accesskit_node().label()));
+        pad.unwrap_or_else(|| panic!("there is no pad {key}")).rect().center()
+    }
+
+    /// The place of a sound in the list, after it was searched for.
+    fn sound(&mut self, name: &str) -> Pos2 {
+        self.harness.get_by_label("Search for sounds").click();
+        self.harness.run_steps(2);
+        self.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        self.harness.event(Event::Text(name.to_owned()));
+        self.harness.run_steps(3);
+        self.harness.get_by_label(&format!("Put {name}")).rect().center()
+    }
+}
+
+#[test]
+fn pictures_of_the_pads_are_as_accepted() {
+    for (theme, size, name) in [
+        (Theme::Dark, SIZE, "pads"),
+        (Theme::Dark, LEAST_SIZE, "pads-least"),
+        (Theme::Light, LEAST_SIZE, "pads-light-least"),
+        (Theme::HighContrast, LEAST_SIZE, "pads-high-contrast-least"),
+    ] {
+        let mut band = Band::of(at("Acoustic Kit", size, theme));
+        let hat = band.stage.place("F#2");
+        band.press(hat, true);
+        band.press(hat, false);
+        band.strike(&[38]);
+        band.passes(2);
+        compare(name, &mut band.stage.harness);
+    }
+    for theme in [Theme::Light, Theme::HighContrast] {
+        compare_small(&format!("pads-{}", theme.id()), 2, &mut at("Acoustic Kit", SIZE, theme).harness);
+    }
+    compare_small("pads-twice", 4, &mut facing(Face::Kit, "Acoustic Kit", SIZE, 2.0, Theme::Dark).harness);
+    compare_small("keys-of-a-preset", 2, &mut at("Marimba", SIZE, Theme::Dark).harness);
+    finish();
+}
+
+#[test]
+fn a_pad_plays_lights_up_is_chosen_and_is_let_go() {
+    let mut band = Band::of(at("Acoustic Kit", SIZE, Theme::Dark));
+    let kick = band.stage.place("C2");
+    band.press(kick + vec2(0.0, 40.0), true);
+    assert!(matches!(band.heard[..], [Touch::Down { key: 36, velocity }] if velocity > 0.7), "{:?}", band.heard);
+    assert_eq!(band.stage.params.link().telemetry.keys(0), 1 << 36);
+    // Leaving the face releases the key.
+    band.stage.harness.get_by_role_and_label(Role::Tab, "Play").click();
+    band.passes(3);
+    assert_eq!(band.stage.params.link().telemetry.keys(0), 0);
+}
+
+#[test]
+fn a_kit_of_three_is_made_played_undone_and_saved() {
+    let mut stage = at("Kick", SIZE, Theme::Dark);
+    let before = stage.params.state();
+    stage.button("Make a kit of this sound");
+    assert_eq!(stage.pad(36).map(|(name, pad)| (name, pad.pitch)), Some(("Kick".to_owned(), Some(60.0))));
+    // A click puts a sound on the chosen pad; a drag on any.
+    let snare = stage.sound("Snare");
+    let aim = stage.place("D2");
+    stage.drag(snare, aim - snare, Modifiers::NONE);
+    let hat = stage.sound("Closed Hat");
+    let aim = stage.place("F#2");
+    stage.drag(hat, aim - hat, Modifiers::NONE);
+    let names = |stage: &Stage| [36, 38, 42].map(|key| stage.pad(key).map(|(name, _)| name).unwrap_or_default());
+    assert_eq!(names(&stage), ["Kick", "Snare", "Closed Hat"]);
+    stage.button("Undo");
+    assert_eq!(names(&stage), ["Kick", "Snare", ""]);
+    stage.button("Redo");
+    let wanted = stage.kit();
+    // Saved under a name, and the same when it is read.
+    stage.button("Save");
+    stage.harness.event(Event::Text("My Three".to_owned()));
+    stage.harness.run_steps(2);
+    stage.harness.key_press(Key::Enter);
+    stage.harness.run_steps(3);
+    let saved = Library::at(stage.folder.path()).entries().remove(0).playable.unwrap();
+    assert_eq!((saved.name(), stage.params.name().as_str()), ("My Three", "My Three"));
+    assert_eq!(saved.kit().sounds(), wanted.kit().sounds());
+    for _ in 0..3 {
+        stage.button("Undo");
+    }
+    assert_eq!(stage.params.state().playable, before.playable);
+}
+
+#[test]
+fn pads_change_places_are_copied_and_emptied() {
+    let mut stage = at("Acoustic Kit", SIZE, Theme::Dark);
+    let [kick, snare] = [36, 38].map(|key| stage.pad(key).unwrap());
+    let (from, to) = (stage.place("C2"), stage.place("D2"));
+    stage.drag(from, to - from, Modifiers::NONE);
+    assert_eq!(
+        [stage.pad(36), stage.pad(38)].map(|pad| pad.map(|(name, _)| name)),
+        [Some(snare.0), Some(kick.0.clone())]
+    );
+    stage.drag(to, from - to, Modifiers::COMMAND);
+    assert_eq!([36, 38].map(|key| stage.pad(key).unwrap().0), [kick.0.clone(), kick.0.clone()]);
+    stage.button("Empty this pad");
+    assert_eq!((stage.pad(36), stage.pad(38).map(|(name, _)| name)), (None, Some(kick.0)));
+    for _ in 0..3 {
+        stage.button("Undo");
+    }
+    assert_eq!(Playable::Kit(stage.kit()), Playable::find("Acoustic Kit").unwrap());
+}
+
+#[test]
+fn numbers_group_and_output_of_a_pad_are_set_and_the_knobs_stay() {
+    let mut stage = at("Acoustic Kit", SIZE, Theme::Dark);
+    let turned = 0.7;
+    stage.params.knobs()[Param::Decay as usize].turn(turned);
+    let hat = stage.place("F#2");
+    stage.drag(hat, hat - hat, Modifiers::NONE);
+    let level = stage.harness.get_by_role_and_label(Role::SpinButton, "Level").rect().center();
+    let before = stage.pad(42).unwrap().1;
+    stage.drag(level, vec2(30.0, 0.0), Modifiers::NONE);
+    let louder = stage.pad(42).unwrap().1;
+    assert!(louder.gain_db > before.gain_db + 1.0, "{louder:?}");
+    stage.harness.get_by_role_and_label(Role::ComboBox, "Output of the pad").click();
+    stage.harness.run_steps(3);
+    stage.button("7");
+    assert_eq!(stage.pad(42).unwrap().1, Pad { output: 7, ..louder.clone() });
+    stage.harness.get_by_role_and_label(Role::ComboBox, "Choke of the pad").click();
+    stage.harness.run_steps(3);
+    stage.button("none");
+    assert_eq!(stage.pad(42).unwrap().1, Pad { output: 7, choke: Some(0), ..louder });
+    assert_eq!(stage.params.knobs()[Param::Decay as usize].position(), turned);
+    for _ in 0..3 {
+        stage.button("Undo");
+    }
+    assert_eq!(stage.pad(42).unwrap().1, before);
+}
+
+#[test]
+fn the_body_is_that_of_the_pad_that_was_struck() {
+    let mut band = Band::of(facing(Face::Play, "Acoustic Kit", SIZE, 1.0, Theme::Dark));
+    for key in [38, 49] {
+        band.strike(&[key]);
+        band.passes(2);
+        band.silence();
+        band.heard.clear();
+        band.stage.harness.get_by_label("Strike").click();
+        band.passes(3);
+        assert!(matches!(band.heard[..], [.., Touch::Down { key: struck, .. }] if struck == key), "{:?}", band.heard);
+    }
+}
