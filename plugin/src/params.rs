@@ -167,10 +167,7 @@ impl SprungParams {
 
     /// Renames the preset or kit. Not for the audio thread.
     pub(crate) fn rename(&self, name: String) {
-        match &mut self.locked().playable {
-            Playable::Preset(preset) => preset.name = name,
-            Playable::Kit(kit) => kit.name = name,
-        }
+        self.locked().playable.rename(name);
     }
 
     /// Size, zoom and theme of the window. Not for the audio thread.

@@ -1,7 +1,6 @@
 //! The state of every knob of a sound: its value, the host's modulation of it, and the ramp by which it moves.
 
 use crate::dsp::ramp::Ramp;
-use crate::engine::modulation::moved;
 use crate::params::{Choice, PARAM_COUNT, PARAMS, Param};
 
 /// The state of one knob.
@@ -83,7 +82,7 @@ impl Knobs {
 
 /// A value with the host's modulation, in the parameter's range.
 fn played(param: Param, value: f32, offset: f32) -> f32 {
-    param.info().clamp(moved(param, value, offset))
+    param.info().clamp(param.info().moved(value, offset))
 }
 
 #[cfg(test)]

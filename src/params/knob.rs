@@ -13,6 +13,16 @@ impl ParamInfo {
         }
     }
 
+    /// A value, moved by an offset in knob travel.
+    pub(crate) fn moved(&self, value: f32, offset: f32) -> f32 {
+        if offset == 0.0 { value } else { self.denormalise(self.normalise(value) + f64::from(offset)) }
+    }
+
+    /// The knob travel from the default to a value.
+    pub(crate) fn travel(&self, value: f32) -> f32 {
+        (self.normalise(value) - self.normalise(self.default)) as f32
+    }
+
     /// Value at a knob position 0–1, rounded to a short decimal number: to five significant digits of the value on a
     /// logarithmic knob, of the range on a linear one. Plugin hosts store positions in single precision; because of the
     /// rounding, a number that a person has set comes back exactly.

@@ -67,6 +67,12 @@ pub(super) fn check_label(key: &str, label: String) -> Result<String, String> {
     }
 }
 
+/// A name with an ending, cut before it so that all is a label.
+pub fn with_ending(name: &str, ending: &str) -> String {
+    let kept: String = name.chars().filter(|letter| !letter.is_control()).take(MAX_LABEL - ending.len()).collect();
+    kept.trim().to_owned() + ending
+}
+
 fn tags(table: &Table, complaints: &mut Complaints) -> Vec<String> {
     let tags = match table.get("tags") {
         None => return Vec::new(),

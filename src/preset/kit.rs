@@ -1,7 +1,7 @@
 //! Kits as they are saved: the preset that each key plays.
 
 use super::Preset;
-use crate::params::{PARAMS, Param, Values};
+use crate::params::{PARAMS, Param, ParamInfo, Values};
 use crate::sound::kit::KEYS;
 use crate::sound::{Kit, Pad};
 use std::sync::Arc;
@@ -43,24 +43,38 @@ pub enum Playable {
 }
 
 impl KitPreset {
-    /// The kit as it sounds while its parameters have these values: those behind the voices become the kit's, and each sound is as
-    /// far from its own value, in knob travel, as the kit's is from the default.
+    /// The kit as it sounds while its parameters have these values. One sound takes them as they are; of several, see
+    /// [`KitPreset::with_moves`].
     #[must_use]
     pub fn with_values(mut self, values: &Values) -> Self {
+        let [(_, preset)] = &mut self.sounds[..] else { return self.with_moves(values) };
+        preset.patch.values = *values;
+        self.take_effects(values)
+    }
+
+    /// The kit with the values of knobs of several sounds: each sound is as far from its own value, in knob travel, as the knob is
+    /// from its default. Parameters behind the voices, the number of voices and the limiter become the kit's.
+    #[must_use]
+    pub fn with_moves(mut self, values: &Values) -> Self {
         self.voices = values.get(Param::Voices) as u8;
-        for info in PARAMS {
-            let (param, value) = (info.param, values.get(info.param));
-            let patches = self.sounds.iter_mut().map(|(_, preset)| &mut preset.patch);
-            if param.is_behind_voices() {
-                self.params.retain(|(own, _)| *own != param);
-                if patches.into_iter().any(|patch| patch.get(param) != value) {
-                    self.params.push((param, value));
-                }
-            } else if value != info.default && !param.is_of_kit() {
-                let offset = info.normalise(value) - info.normalise(info.default);
-                patches.for_each(|patch| patch.set(param, info.denormalise(info.normalise(patch.get(param)) + offset)));
-            }
+        for patch in self.sounds.iter_mut().map(|(_, preset)| &mut preset.patch) {
+            patch.set(Param::Limiter, values.get(Param::Limiter));
+            let infos = PARAMS.iter().filter(|info| !info.param.is_behind_voices() && !info.param.is_of_kit());
+            infos.for_each(|info| {
+                patch.set(info.param, info.moved(patch.get(info.param), info.travel(values.get(info.param))))
+            });
         }
+        self.take_effects(values)
+    }
+
+    /// The kit with these values behind the voices, whatever sounds it has.
+    fn take_effects(mut self, values: &Values) -> Self {
+        let behind = PARAMS.iter().filter(|info| info.param.is_behind_voices());
+        let is_own = |info: &&ParamInfo| {
+            let value = values.get(info.param);
+            value != info.default || self.sounds.iter().any(|(_, preset)| preset.patch.get(info.param) != value)
+        };
+        self.params = behind.filter(is_own).map(|info| (info.param, values.get(info.param))).collect();
         self
     }
 
@@ -162,21 +176,35 @@ mod tests {
         let Ok(Playable::Kit(kit)) = Playable::find("Acoustic Kit") else { panic!("it is there") };
         let mut values = *kit.kit().values();
         assert_eq!(kit.kit(), kit.clone().with_values(&values).kit(), "as they are");
-        for (param, value) in [(Param::Voices, 9.0), (Param::SpaceMix, 31.0)] {
+        for (param, value) in [(Param::Voices, 9.0), (Param::SpaceMix, 31.0), (Param::Limiter, 0.0)] {
             values.set(param, value);
         }
         let info = Param::Decay.info();
         values.set(Param::Decay, info.denormalise(info.normalise(info.default) + 0.1));
         let taken = kit.clone().with_values(&values);
-        let expected = {
-            let mut expected = values;
-            expected.set(Param::Decay, info.default);
-            expected
-        };
-        assert_eq!(taken.kit().values(), &expected);
+        values.set(Param::Decay, info.default);
+        assert_eq!(taken.kit().values(), &values);
         for ((_, before), (_, after)) in kit.sounds.iter().zip(&taken.sounds) {
             let way = |preset: &Preset| info.normalise(preset.patch.get(Param::Decay));
             assert!((way(after) - (way(before) + 0.1).min(1.0)).abs() < 1e-5, "{}", before.name);
         }
+    }
+
+    #[test]
+    fn a_kit_of_one_sound_takes_them_as_they_are_and_keeps_its_effects_beside_others() {
+        let Ok(Playable::Kit(kit)) = Playable::find("Acoustic Kit") else { panic!("it is there") };
+        let sound = ("Kick".to_owned(), Preset::find("Kick").unwrap().clone());
+        let single = KitPreset { sounds: vec![sound], pads: vec![(36, Pad::of(0))], params: Vec::new(), ..kit };
+        let mut values = *single.kit().values();
+        for (param, value) in [(Param::Decay, 0.7), (Param::Choke, 3.0), (Param::SpaceMix, 31.0)] {
+            values.set(param, value);
+        }
+        let mut taken = single.clone().with_values(&values);
+        assert_eq!(
+            (taken.sounds[0].1.patch.values, taken.kit().values(), taken.voices),
+            (values, &values, single.voices)
+        );
+        taken.sounds.push(("Snare".to_owned(), Preset::find("Snare").unwrap().clone()));
+        assert_eq!(taken.kit().values().get(Param::SpaceMix), 31.0);
     }
 }

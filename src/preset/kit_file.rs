@@ -9,7 +9,7 @@ use super::{MAX_FILE_SIZE, Preset};
 use crate::error::Error;
 use crate::params::Param;
 use crate::sound::Pad;
-use crate::sound::kit::OUTPUTS;
+use crate::sound::kit::{OUTPUTS, PITCHES};
 use crate::units::{key_from_note_name, note_name, parse_key};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -187,6 +187,8 @@ fn read_key(value: Option<&Value>) -> Result<u8, String> {
 fn read_pitch(value: &Value, a4_hz: f64) -> Result<f64, String> {
     match value {
         Value::String(text) => parse_key(text, a4_hz),
+        // Such are written of frequencies that no key has.
+        Value::Float(pitch) if PITCHES.contains(pitch) => Ok(*pitch),
         Value::Integer(_) | Value::Float(_) => parse_key(&value.to_string(), a4_hz),
         other => Err(format!("expected a note name, a key or a frequency, found {}", other.type_str())),
     }
@@ -263,7 +265,8 @@ mod tests {
         let text = "kit = 1\nname = \"k\"\nauthor = \"a\"\ntags = [\"t\"]\ncomment = \"c\\n\"\ndetails = \"d\"\nvoices = 7\n\
                     keys = [{ key = \"C2\", sound = \"Kick\" }, { key = 38, output = \"main\", sound = \"snare\", pitch = \"60.5\", gain = \"-3 dB\" },\
                     { key = \"39\", sound = \"Kick\", pitch = \"F#3\", pan = -0.3, choke = 0, name = \"K\" },\
-                    { key = \"G9\", sound = \"Clap\", pitch = 41, gain = 2, choke = 16, output = 16 }]";
+                    { key = \"G9\", sound = \"Clap\", pitch = 41, gain = 2, choke = 16, output = 16 },\
+                    { key = 0, sound = \"Kick\", pitch = -0.6 }]";
         let Ok(Playable::Kit(kit)) = parse(text) else { panic!("{:?}", parse(text)) };
         let pad = |sound| Pad::of(sound);
         assert_eq!(
@@ -273,6 +276,7 @@ mod tests {
                 (38, Pad { pitch: Some(60.5), gain_db: -3.0, ..pad(1) }),
                 (39, Pad { name: "K".to_owned(), pitch: Some(54.0), pan: -0.3, choke: Some(0), ..pad(0) }),
                 (127, Pad { pitch: Some(41.0), gain_db: 2.0, choke: Some(16), output: 16, ..pad(2) }),
+                (0, Pad { pitch: Some(-0.6), ..pad(0) }),
             ]
         );
         assert_eq!((kit.voices, kit.sounds.len()), (7, 3));

@@ -1,6 +1,6 @@
 //! The user's own presets and kits, as files in a folder of the user's data, and the list of favourites.
 
-use super::about::MAX_LABEL;
+use super::about::with_ending;
 use super::{Playable, Preset, is_file_name};
 use crate::error::{Error, Result};
 use crate::params::Param;
@@ -111,13 +111,12 @@ impl Library {
         Ok(saved)
     }
 
-    /// Copies a preset into the library, or a kit with its presets. If its name is taken, a number is added to the name. Returns the
-    /// sound as saved, and the path of its new file.
+    /// Adds a preset to the library, or a kit with its presets. If its name is taken, a number is added to the name. Returns the
+    /// sound as saved, and the path of its file.
     ///
     /// # Errors
-    /// As [`Playable::read`] and [`Library::save`].
-    pub fn import(&self, path: &Path) -> Result<(Playable, PathBuf)> {
-        let mut sound = read(path)?;
+    /// As [`Library::save`].
+    pub fn import(&self, mut sound: Playable) -> Result<(Playable, PathBuf)> {
         let own = sound.name().to_owned();
         let names: Vec<String> =
             self.paths().iter().filter_map(|path| read(path).ok()).map(|found| found.name().to_owned()).collect();
@@ -126,9 +125,7 @@ impl Library {
             |name: &str| Playable::find(name).is_ok() || names.iter().any(|other| other.eq_ignore_ascii_case(name));
         let mut number = 2;
         while is_taken(sound.name()) {
-            let end = format!(" {number}");
-            let kept: String = own.chars().take(MAX_LABEL - end.len()).collect();
-            sound.rename(kept.trim_end().to_owned() + &end);
+            sound.rename(with_ending(&own, &format!(" {number}")));
             number += 1;
         }
         let place = self.save(&sound, false)?;

@@ -28,6 +28,7 @@ use crate::patch::Patch;
 use crate::sound::{Kit, Sound};
 use std::sync::Arc;
 
+pub use about::with_ending;
 pub use body::{body_of_modes, modes_of_body};
 pub use guide::{Family, Guide};
 pub use kit::{KitPreset, Playable};

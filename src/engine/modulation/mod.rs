@@ -42,7 +42,7 @@ pub(crate) use bus::Bus;
 #[cfg(feature = "fit")]
 pub(crate) use lfo::Lfo;
 pub(crate) use modulators::{Modulators, Positions, Struck};
-pub(crate) use note::{NoteModulation, modulated, moved};
+pub(crate) use note::{NoteModulation, modulated};
 pub(crate) use settings::{Settings, SharedLfos};
 
 /// Rate in Hz of an oscillator whose cycle lasts a note value, at a tempo in beats per second; `rate` if

@@ -5,16 +5,7 @@ use crate::params::{Change, PARAM_COUNT, PARAMS, Param, Values};
 
 /// The value of a parameter, moved by an offset in knob travel.
 pub(crate) fn modulated(values: &Values, param: Param, offset: f32) -> f32 {
-    moved(param, values.get(param), offset)
-}
-
-/// A value of a parameter, moved by an offset in knob travel.
-pub(crate) fn moved(param: Param, value: f32, offset: f32) -> f32 {
-    if offset == 0.0 {
-        return value;
-    }
-    let info = param.info();
-    info.denormalise(info.normalise(value) + f64::from(offset))
+    param.info().moved(values.get(param), offset)
 }
 
 /// Number of parameters that sounding notes follow.
@@ -78,7 +69,7 @@ impl NoteModulation {
     ) {
         for moved in self.moved.iter_mut().flatten() {
             let target = match moved.has_offset {
-                true => self::moved(moved.param, value(moved.param), moved.offset),
+                true => moved.param.info().moved(value(moved.param), moved.offset),
                 false => played(moved.param),
             };
             if at_once {

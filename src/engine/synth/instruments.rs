@@ -1,7 +1,7 @@
 //! The instruments of a kit, one for each sound, and their common parameters, host modulation and tuning.
 
 use crate::engine::instrument::Instrument;
-use crate::engine::modulation::{modulated, moved};
+use crate::engine::modulation::modulated;
 use crate::engine::note::Note;
 use crate::engine::portamento::NoteGlide;
 use crate::engine::voice::{SynthVoice, footprint};
@@ -270,7 +270,7 @@ fn value_of_sound<'a>(kit: &'a Kit, values: &'a Values) -> impl Fn(Param, f32) -
         match kit.is_single() {
             true => value,
             false if param.is_of_kit() => own,
-            false => moved(param, own, (info.normalise(value) - info.normalise(info.default)) as f32),
+            false => info.moved(own, info.travel(value)),
         }
     }
 }

@@ -220,13 +220,11 @@ impl Synth {
 
     /// Adds the voices that sound now to a snapshot. Real-time safe.
     pub fn show(&self, snapshot: &mut Snapshot) {
-        let kit = self.instruments.kit();
-        let sound = |note: &Note| kit.pad(note.key).map(|pad| pad.sound);
         let newest = self.manager.sounding_voices().min_by(|(_, one), (_, other)| one.age().total_cmp(&other.age()));
         // The modes of a kit's other sounds are others.
-        let shown = newest.and_then(|(note, _)| sound(note));
+        let shown = newest.map(|(note, _)| note.patch);
         for (note, voice) in self.manager.sounding_voices() {
-            snapshot.add(note, voice, sound(note) == shown);
+            snapshot.add(note, voice, Some(note.patch) == shown);
         }
     }
 

@@ -1,4 +1,4 @@
-//! Files dropped on the window: presets are imported, scales and mappings tune the sound, recordings are fitted.
+//! Files dropped on the window: presets and kits are imported, scales and mappings tune the sound, recordings are fitted.
 
 pub(super) mod fitting;
 mod recordings;
@@ -30,7 +30,7 @@ pub(super) fn take(path: &Path, library: Option<&Library>, controls: &mut Contro
         "scl" | "kbm" => tuning::take(path, controls),
         "toml" => sound(path, library, controls),
         _ => format!(
-            "{}: expected a recording (.wav, .flac …), a preset (.toml), a scale (.scl) or a keyboard mapping (.kbm)",
+            "{}: expected a recording (.wav, .flac …), a preset or kit (.toml), a scale (.scl) or a keyboard mapping (.kbm)",
             path.display()
         ),
     }
@@ -45,14 +45,16 @@ fn is_own(path: &Path, library: &Library) -> bool {
 
 /// Loads a preset or kit. One from elsewhere is copied to the user's folder, if there is one.
 fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
-    let read = match library.filter(|library| !is_own(path, library)) {
-        Some(library) => library.import(path).map(|(sound, place)| {
+    let read = files::read(&path.display().to_string());
+    let imported = read.and_then(|sound| match library.filter(|library| !is_own(path, library)) {
+        Some(library) => {
+            let (sound, place) = library.import(sound)?;
             let message = format!("imported as “{}”, {}", sound.name(), place.display());
-            (sound, message)
-        }),
-        None => files::read(&path.display().to_string()).map(|sound| (sound, format!("loaded {}", path.display()))),
-    };
-    match read {
+            Ok((sound, message))
+        }
+        None => Ok((sound, format!("loaded {}", path.display()))),
+    });
+    match imported {
         Ok((sound, message)) => {
             controls.history.load(sound, controls.params, controls.host);
             message

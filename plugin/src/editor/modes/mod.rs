@@ -103,7 +103,7 @@ impl ModesView {
         let snap = Rect::from_min_max(pos2(rect.right() - 78.0, rect.top() + 1.0), rect.max);
         let rest = Rect::from_min_max(pos2(title.right() + 12.0, rect.top()), pos2(snap.left() - 8.0, rect.bottom()));
         let help = match (is_editable, patch.modes.origin().is_some()) {
-            (false, _) => "of the kit’s first sound",
+            (false, _) => "of the pad that was struck or chosen last",
             (true, true) => "from a model; the first change makes them a table of their own",
             (true, false) => {
                 "drag: level, ratio   Alt: decay   Ctrl: pan   Shift: fine   right-drag: draw   double-click: add, remove"
