@@ -6,7 +6,8 @@
 //! | `theme` | colours, sizes and fonts; the places of the parts |
 //! | `play` | the page it opens with: the body large, what moves it, what it is, what it stands on, macros |
 //! | `modes`, `displays`, `body` | the upper half of *Sound*: the modes, moving pictures, the moving body; also the body's page |
-//! | `pages`, `routes` | the lower half: tabs, sections of parameters, tuning, devices; routes, also learnt |
+//! | `pages` | the lower half: the way of the sound, sections of parameters, tuning, devices |
+//! | `motion`, `routes` | what moves: sources, envelopes and oscillators as curves; routes as sentences, also learnt and dragged |
 //! | `kit` | the pads of a kit, the sounds that are put on them, and the chosen pad; all keys of a preset |
 //! | `keyboard` | the piano, and whatever else plays a key |
 //! | `browser`, `manual`, `drops` | over the window: sounds to find and save, the manual, fits of dropped recordings |
@@ -40,6 +41,7 @@ mod kit;
 mod lamps;
 mod manual;
 mod modes;
+mod motion;
 mod pages;
 mod play;
 mod routes;

@@ -8,6 +8,7 @@ pub(super) mod shown;
 use crate::editor::theme::Palette;
 use crate::marks::Mark;
 use crate::params::SprungParams;
+use egui::Rect;
 use gestures::Gestures;
 use history::History;
 use nice_plug_core::context::PluginApi;
@@ -59,6 +60,10 @@ pub(super) struct Interaction {
     pub(super) binding: Option<Binding>,
     /// The parameter that the user has moved last, until somebody has looked.
     pub(super) touched: Option<usize>,
+    /// The knob under a source that is being dragged, in this pass.
+    pub(super) aim: Option<&'static ParamInfo>,
+    /// The place over which it is held, to show what is behind it, and since when.
+    pub(super) dwell: Option<(Rect, f64)>,
     /// The values that parts had when they were switched off, by sound and section.
     pub(super) switched_off: HashMap<(String, &'static str), Vec<(Param, f32)>>,
 }

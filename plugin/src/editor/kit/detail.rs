@@ -13,11 +13,13 @@ use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::number::{HEIGHT, Number};
 use crate::editor::widgets::text::{line, name_field, paragraph};
-use egui::{Align2, Id, Rect, TextEdit, Ui, pos2, vec2};
+use crate::loaded::Loaded;
+use egui::{Align2, Id, Key, Rect, TextEdit, Ui, UiBuilder, pos2, vec2};
 use sprung::params::Param;
-use sprung::preset::Playable;
+use sprung::preset::{Playable, Preset, with_ending};
 use sprung::sound::Pad;
 use sprung::units::{note_name, number_in_unit, parse_key};
+use std::sync::Arc;
 
 /// Height of a row with a name and a choice, and width of the name.
 const ROW: f32 = 26.0;
@@ -31,8 +33,8 @@ const PITCHES: [f64; 2] = [0.0, 127.0];
 pub(super) struct Detail {
     /// The key whose number is being dragged or typed, and the name of the step.
     turning: Option<(u8, String)>,
-    /// The name that is being typed for the pad of a key.
-    name: Option<(u8, String)>,
+    /// The name that is being typed for the pad of a key of a kit.
+    name: Option<(Arc<Loaded>, u8, String)>,
 }
 
 impl Detail {
@@ -62,7 +64,7 @@ impl Detail {
             return None;
         };
         let preset = &kit.sounds.get(now.sound)?.1;
-        self.title(ui, rect.with_max_y(rect.top() + 22.0), key, (now, &preset.name), controls);
+        self.title(ui, rect.with_max_y(rect.top() + 22.0), (key, shown.loaded()), (now, &preset.name), controls);
         let feet = rect.with_min_y(rect.bottom() - 24.0);
         let rows = |place: f32| {
             let top = feet.top() - (2.0 - place) * ROW - 2.0;
@@ -77,11 +79,13 @@ impl Detail {
                 Rect::from_center_size(picture.center(), vec2(0.8 * picture.width().min(2.0 * height), 0.8 * height));
             face::paint(ui.painter(), place, figure, &[], None, palette);
         }
-        self.numbers(ui, numbers, key, now, controls);
+        // Fields of their own for each pad: what is typed belongs to one.
+        let mut fields = ui.new_child(UiBuilder::new().id_salt(("pad numbers", key)).max_rect(numbers));
+        self.numbers(&mut fields, numbers, key, (now, preset), controls);
         let chosen = choices(ui, [rows(0.0), rows(1.0)], shown, now, controls);
         if let Some((changed, what)) = chosen {
             self.leave(controls);
-            change(format!("{} {what}", name_of(key)), controls, |kit| set(kit, key, Some(changed.clone())));
+            change(format!("{} {what}", name_of(key)), controls, |kit| set(kit, key, Some(changed)));
         }
         let [open, empty] = [0.0, 1.0].map(|place| {
             let width = (feet.width() - 4.0) / 2.0;
@@ -91,8 +95,11 @@ impl Detail {
         if response.hovered() {
             *controls.hint = Hint::new("Load alone", "To change the sound itself: save it, and put it on a pad.");
         }
-        if response.clicked() {
-            controls.history.load(Playable::Preset(preset.clone()), controls.params, controls.host);
+        if response.clicked()
+            && let Playable::Kit(mut heard) = controls.params.state().into_sound()
+        {
+            let (_, preset) = heard.sounds.swap_remove(now.sound);
+            controls.history.load(Playable::Preset(preset), controls.params, controls.host);
             return None;
         }
         let look = if kit.pads.len() > 1 { Look::Plain } else { Look::Disabled };
@@ -100,29 +107,33 @@ impl Detail {
     }
 
     /// Shows the pad's name, which can be typed.
-    fn title(&mut self, ui: &mut Ui, rect: Rect, key: u8, (pad, sound): (&Pad, &str), controls: &mut Controls) {
+    fn title(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        (key, loaded): (u8, &Arc<Loaded>),
+        (pad, sound): (&Pad, &str),
+        controls: &mut Controls,
+    ) {
         let note = rect.with_min_x(rect.right() - 34.0);
         line(ui.painter(), note, Align2::RIGHT_CENTER, &note_name(key), SMALL, controls.palette.muted);
-        let mut text = match &self.name {
-            Some((own, text)) if *own == key => text.clone(),
-            _ => pad.name.clone(),
-        };
+        let typed = self.name.take().filter(|(kit, own, _)| Arc::ptr_eq(kit, loaded) && *own == key);
+        let mut text = typed.map_or(pad.name.clone(), |(.., text)| text);
         let edit = TextEdit::singleline(&mut text).id(Id::unique(("pad name", key))).hint_text(sound);
         let response = ui.put(rect.with_max_x(note.left() - 4.0), edit.font(font(TEXT)).margin(vec2(6.0, 3.0)));
         name_field(&response, "Name of the pad", &text);
         if response.has_focus() {
-            self.name = Some((key, text));
-        } else if response.lost_focus() {
-            self.name = None;
-            let name: String = text.trim().chars().filter(|letter| !letter.is_control()).take(100).collect();
-            let named = Pad { name: name.trim_end().to_owned(), ..pad.clone() };
+            self.name = Some((loaded.clone(), key, text));
+        } else if response.lost_focus() && !ui.input(|input| input.key_pressed(Key::Escape)) {
+            let named = Pad { name: with_ending(&text, ""), ..pad.clone() };
             if named != *pad {
-                change(format!("{} name", name_of(key)), controls, |kit| set(kit, key, Some(named.clone())));
+                change(format!("{} name", name_of(key)), controls, |kit| set(kit, key, Some(named)));
             }
         }
     }
 
-    fn numbers(&mut self, ui: &mut Ui, rect: Rect, key: u8, now: &Pad, controls: &mut Controls) {
+    fn numbers(&mut self, ui: &mut Ui, rect: Rect, key: u8, (now, preset): (&Pad, &Preset), controls: &mut Controls) {
+        let a4_hz = f64::from(preset.patch.get(Param::Tuning));
         let width = rect.width() / 3.0;
         let cell = |place: f32| Rect::from_min_size(rect.min + vec2(place * width, 0.0), vec2(width, HEIGHT));
         let pitch = Number {
@@ -136,7 +147,7 @@ impl Detail {
                 true => note_name(pitch as u8),
                 false => format!("{pitch:.2}"),
             },
-            read: &|text| parse_key(text, 440.0).ok(),
+            read: &|text| parse_key(text, a4_hz).ok(),
         };
         let level = Number {
             title: "Level",
@@ -179,7 +190,7 @@ impl Detail {
                 let mut turned = now.clone();
                 set_number(&mut turned, value);
                 // The host is told at the end.
-                if let Some(state) = edited(controls, |kit| set(kit, key, Some(turned.clone()))) {
+                if let Some(state) = edited(controls, |kit| set(kit, key, Some(turned))) {
                     controls.params.load(state.into());
                 }
             }
@@ -199,40 +210,40 @@ impl Detail {
 
 /// Shows choke group and output of a pad. Returns the changed pad and what has changed.
 fn choices(ui: &Ui, rows: [Rect; 2], shown: &Shown, pad: &Pad, controls: &mut Controls) -> Option<(Pad, String)> {
-    let palette = controls.palette;
     let own = shown.loaded().kit.choke(&Pad { choke: None, ..pad.clone() }, controls.value(Param::Choke.info()));
+    let own = if own == 0 { "none".to_owned() } else { own.to_string() };
     let numbers = || (1..=16).map(|number: u8| number.to_string());
-    let group = |group: u8| if group == 0 { "none".to_owned() } else { group.to_string() };
-    let groups: Vec<String> = [format!("the sound’s: {}", group(own)), group(0)].into_iter().chain(numbers()).collect();
+    let groups: Vec<String> = [format!("the sound’s: {own}"), "none".to_owned()].into_iter().chain(numbers()).collect();
     let outputs: Vec<String> = std::iter::once("main".to_owned()).chain(numbers()).collect();
-    let group_place = pad.choke.map_or(0, |group| usize::from(group) + 1);
-    let mut changed = None;
-    for (row, title, help, names, place) in [
-        (rows[0], "Choke", "Pads of one group silence each other.", &groups, group_place),
-        (
-            rows[1],
-            "Output",
-            "The stereo output in Sprung Multi; other plugins have the main one only.",
-            &outputs,
-            pad.output.into(),
-        ),
-    ] {
-        let name = row.with_max_x(row.left() + NAMES);
-        line(ui.painter(), name, Align2::LEFT_CENTER, title, SMALL, palette.muted);
-        let words: Vec<&str> = names.iter().map(String::as_str).collect();
-        let label = format!("{title} of the pad");
-        let field = Field { id: Id::unique(("pad", title)), name: &label, value: words[place], is_default: place == 0 };
-        let (response, picked) = field.show(ui, row.with_min_x(name.right()), &words, palette);
-        if response.hovered() {
-            *controls.hint = Hint::new(format!("{title} {}", words[place]), help);
-        }
-        if let Some(picked) = picked {
-            let pad = match title {
-                "Choke" => Pad { choke: picked.checked_sub(1).map(|group| group as u8), ..pad.clone() },
-                _ => Pad { output: picked as u8, ..pad.clone() },
-            };
-            changed = Some((pad, format!("{} {}", title.to_lowercase(), words[picked])));
-        }
+    let place = pad.choke.map_or(0, |group| usize::from(group) + 1);
+    let group = choice(ui, rows[0], ("Choke", "Pads of one group silence each other."), (&groups, place), controls);
+    let help = "The stereo output in Sprung Multi; other plugins have the main one only.";
+    let output = choice(ui, rows[1], ("Output", help), (&outputs, pad.output.into()), controls);
+    let grouped = |place: usize| {
+        let choke = place.checked_sub(1).map(|group| group as u8);
+        (Pad { choke, ..pad.clone() }, format!("choke {}", groups[place]))
+    };
+    let sent = |place: usize| (Pad { output: place as u8, ..pad.clone() }, format!("output {}", outputs[place]));
+    group.map(grouped).or(output.map(sent))
+}
+
+/// Shows a choice of the pad under its title. Returns the place that was picked.
+fn choice(
+    ui: &Ui,
+    row: Rect,
+    (title, help): (&str, &str),
+    (names, place): (&[String], usize),
+    controls: &mut Controls,
+) -> Option<usize> {
+    let palette = controls.palette;
+    let name = row.with_max_x(row.left() + NAMES);
+    line(ui.painter(), name, Align2::LEFT_CENTER, title, SMALL, palette.muted);
+    let words: Vec<&str> = names.iter().map(String::as_str).collect();
+    let label = format!("{title} of the pad");
+    let field = Field { id: Id::unique(("pad", title)), name: &label, value: words[place], is_default: place == 0 };
+    let (response, picked) = field.show(ui, row.with_min_x(name.right()), &words, palette);
+    if response.hovered() {
+        *controls.hint = Hint::new(format!("{title} {}", words[place]), help);
     }
-    changed
+    picked
 }

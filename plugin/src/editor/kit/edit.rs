@@ -3,7 +3,7 @@
 use crate::editor::controls::Controls;
 use crate::editor::controls::gestures::load;
 use crate::state::State;
-use sprung::preset::{KitPreset, Playable, Preset};
+use sprung::preset::{KitPreset, Playable, Preset, with_ending};
 use sprung::sound::Pad;
 use sprung::units::note_name;
 
@@ -11,7 +11,7 @@ use sprung::units::note_name;
 pub(super) const FIRST: u8 = 36;
 
 /// Changes the kit as one step that can be undone.
-pub(super) fn change(what: String, controls: &mut Controls, edit: impl Fn(&mut KitPreset)) {
+pub(super) fn change(what: String, controls: &mut Controls, edit: impl FnOnce(&mut KitPreset)) {
     let Some(state) = edited(controls, edit) else { return };
     controls.history.begin(controls.params);
     load(state, controls.params, controls.host);
@@ -19,26 +19,27 @@ pub(super) fn change(what: String, controls: &mut Controls, edit: impl Fn(&mut K
 }
 
 /// The state with a changed kit; none while a preset is loaded.
-pub(super) fn edited(controls: &Controls, edit: impl Fn(&mut KitPreset)) -> Option<State> {
+pub(super) fn edited(controls: &Controls, edit: impl FnOnce(&mut KitPreset)) -> Option<State> {
     let state = controls.params.state();
     let Playable::Kit(kit) = &state.playable else { return None };
-    let edited = |mut kit: KitPreset| {
-        edit(&mut kit);
-        leave_out_unused(&mut kit);
-        kit
-    };
-    let kept = edited(kit.clone());
-    // Knobs of one sound have its values, those of several move all of them: between the two, sounds take the knobs' values.
-    if (kit.sounds.len() == 1) == (kept.sounds.len() == 1) {
-        return Some(State { playable: Playable::Kit(kept), ..state });
-    }
-    let taken = edited(kit.clone().with_values(&state.values));
-    Some(State::new(Playable::Kit(taken), state.seed, state.view))
+    // The knobs of one sound have its values, those of several move all: from one to several, it takes them with it.
+    let was_single = kit.sounds.len() == 1;
+    let before = if was_single { kit.clone().with_values(&state.values) } else { kit.clone() };
+    let mut after = before.clone();
+    edit(&mut after);
+    number_by_use(&mut after);
+    let is_single = after.sounds.len() == 1;
+    Some(match (was_single, is_single) {
+        (false, false) => State { playable: Playable::Kit(after), ..state },
+        (true, true) if before.sounds == after.sounds => State { playable: Playable::Kit(after), ..state },
+        (false, true) => State::new(Playable::Kit(after.with_moves(&state.values)), state.seed, state.view),
+        _ => State::new(Playable::Kit(after), state.seed, state.view),
+    })
 }
 
 /// A kit with one pad that plays a preset.
 pub(super) fn kit_of(preset: Preset) -> KitPreset {
-    let (name, author) = (format!("{} kit", preset.name), preset.author.clone());
+    let (name, author) = (with_ending(&preset.name, " kit"), preset.author.clone());
     let mut kit = KitPreset {
         name,
         author,
@@ -81,20 +82,35 @@ pub(super) fn put(kit: &mut KitPreset, key: u8, preset: &Preset) {
     set(kit, key, Some(Pad { name: String::new(), sound, pitch, gain_db: 0.0, ..before }));
 }
 
+/// The pad of a key, to be put on another: its pitch stays.
+fn taken(kit: &KitPreset, key: u8) -> Option<Pad> {
+    pad(kit, key).map(|pad| Pad { pitch: pad.pitch.or(Some(key.into())), ..pad.clone() })
+}
+
 /// Lets two keys change their pads.
 pub(super) fn swap(kit: &mut KitPreset, [from, to]: [u8; 2]) {
-    let [first, second] = [from, to].map(|key| pad(kit, key).cloned());
+    let [first, second] = [from, to].map(|key| taken(kit, key));
     set(kit, to, first);
     set(kit, from, second);
 }
 
-/// Leaves out the sounds that no pad plays.
-fn leave_out_unused(kit: &mut KitPreset) {
-    for sound in (0..kit.sounds.len()).rev() {
-        if kit.pads.iter().all(|(_, pad)| pad.sound != sound) {
-            kit.sounds.remove(sound);
-            kit.pads.iter_mut().filter(|(_, pad)| pad.sound > sound).for_each(|(_, pad)| pad.sound -= 1);
+/// Puts a copy of a pad on another key, if there is a pad.
+pub(super) fn copy(kit: &mut KitPreset, [from, to]: [u8; 2]) {
+    if let Some(pad) = taken(kit, from) {
+        set(kit, to, Some(pad));
+    }
+}
+
+/// Puts the sounds in the order in which pads use them, as a kit's file does, without those that none plays.
+fn number_by_use(kit: &mut KitPreset) {
+    let mut before: Vec<_> = std::mem::take(&mut kit.sounds).into_iter().map(Some).collect();
+    let mut places = vec![0; before.len()];
+    for (_, pad) in &mut kit.pads {
+        if let Some(sound) = before.get_mut(pad.sound).and_then(Option::take) {
+            places[pad.sound] = kit.sounds.len();
+            kit.sounds.push(sound);
         }
+        pad.sound = places[pad.sound];
     }
 }
 
@@ -125,20 +141,20 @@ mod tests {
         let text = kit.to_toml();
         let mut find = |name: &str| Preset::find(name).cloned();
         assert_eq!(Playable::parse(&text, "x", &mut find).unwrap(), Playable::Kit(kit.clone()));
-        let on = |kit: &KitPreset, key| pad(kit, key).map(|pad| kit.sounds[pad.sound].0.clone());
+        let on = |kit: &KitPreset, key| pad(kit, key).map(|pad| kit.sounds[pad.sound].0.clone()).unwrap_or_default();
         swap(&mut kit, [36, 42]);
         swap(&mut kit, [38, 50]);
-        leave_out_unused(&mut kit);
-        assert_eq!(
-            [36, 38, 40, 42, 50].map(|key| on(&kit, key).unwrap_or_default()),
-            ["Snare 2", "", "Snare", "Kick", "Snare"]
-        );
+        number_by_use(&mut kit);
+        assert_eq!([36, 38, 40, 42, 50].map(|key| on(&kit, key)), ["Snare 2", "", "Snare", "Kick", "Snare"]);
+        assert_eq!(Playable::parse(&kit.to_toml(), "x", &mut find).unwrap(), Playable::Kit(kit.clone()));
         set(&mut kit, 42, None);
-        leave_out_unused(&mut kit);
-        assert_eq!(
-            (names(&kit), on(&kit, 36)),
-            (vec!["Snare".to_owned(), "Snare 2".to_owned()], Some("Snare 2".to_owned()))
-        );
+        number_by_use(&mut kit);
+        assert_eq!((names(&kit), on(&kit, 36)), (vec!["Snare 2".to_owned(), "Snare".to_owned()], "Snare 2".to_owned()));
+        // A pad without a pitch of its own keeps that of its key.
+        set(&mut kit, 60, Some(Pad::of(0)));
+        copy(&mut kit, [60, 62]);
+        copy(&mut kit, [1, 62]);
+        assert_eq!(pad(&kit, 62).and_then(|pad| pad.pitch), Some(60.0));
     }
 
     #[test]

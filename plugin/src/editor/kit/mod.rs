@@ -9,6 +9,7 @@ mod sounds;
 use crate::editor::body::figure::Figure;
 use crate::editor::body::shape::small_figure;
 use crate::editor::browser::Browser;
+use crate::editor::controls::files::load;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
@@ -20,7 +21,7 @@ use crate::editor::widgets::text::line;
 use crate::link::Link;
 use crate::loaded::Loaded;
 use detail::Detail;
-use edit::{change, name_of, put, set, swap};
+use edit::{change, copy, name_of, put, set, swap};
 use egui::{Align2, Rect, Ui, pos2, vec2};
 use pads::{Carried, Deed, Pads};
 use sounds::SoundList;
@@ -41,17 +42,37 @@ pub(super) struct KitPage {
     detail: Detail,
     keys: KeyGrid,
     shows_keys: bool,
-    carried: Option<Carried>,
     audition: Audition,
-    /// The figures of the kit's sounds.
-    figures: Option<(Arc<Loaded>, Vec<Figure>)>,
+    /// The name of the kit; empty for a preset.
+    name: String,
+    figures: Figures,
+}
+
+/// The figures of the kit's sounds, made anew only when these change.
+#[derive(Default)]
+struct Figures {
+    loaded: Option<Arc<Loaded>>,
+    sounds: Vec<(String, Preset)>,
+    figures: Vec<Figure>,
+}
+
+impl Figures {
+    fn of(&mut self, shown: &Shown) -> &[Figure] {
+        let sounds = shown.kit().map_or(&[][..], |kit| &kit.sounds);
+        let is_known = self.loaded.as_ref().is_some_and(|loaded| Arc::ptr_eq(loaded, shown.loaded()));
+        if !is_known && self.sounds != sounds {
+            let of = |(_, preset): &(String, Preset)| small_figure(&preset.patch.modes, preset.guide.family);
+            (self.sounds, self.figures) = (sounds.to_vec(), sounds.iter().map(of).collect());
+        }
+        self.loaded = Some(shown.loaded().clone());
+        &self.figures
+    }
 }
 
 impl KitPage {
     /// Ends the user's action, and releases the held keys.
     pub(super) fn leave(&mut self, controls: &mut Controls) {
         self.detail.leave(controls);
-        self.carried = None;
         self.release(controls.params.link());
     }
 
@@ -73,9 +94,17 @@ impl KitPage {
     ) -> Option<Request> {
         let palette = controls.palette;
         self.audition.follow_time(ui.input(|input| input.time), controls.params.link());
-        let Some(kit) = shown.kit() else { return self.show_preset(ui, rect, shown, down, controls) };
-        if !kit.pads.iter().any(|(key, _)| *key == self.pads.chosen()) && self.figures.is_none() {
-            self.pads.choose(kit.pads.first().map_or(edit::FIRST, |(key, _)| *key));
+        let name = shown.kit().map_or(String::new(), |kit| kit.name.clone());
+        if self.name != name {
+            self.leave(controls);
+            self.name = name;
+            let keys = || shown.kit().into_iter().flat_map(|kit| kit.pads.iter().map(|(key, _)| *key));
+            if let Some(first) = keys().next().filter(|_| keys().all(|key| key != self.pads.chosen())) {
+                self.pads.choose(first);
+            }
+        }
+        if shown.kit().is_none() {
+            return self.show_preset(ui, rect, shown, down, controls);
         }
         let [left, right] = SIDES.map(|(share, [least, most])| (share * rect.width()).clamp(least, most));
         let list = rect.with_max_x(rect.left() + left);
@@ -87,19 +116,18 @@ impl KitPage {
         let inner = middle.shrink(PADDING);
         let (head, below) = inner.split_top_bottom_at_y(inner.top() + HEAD);
         let request = self.head(ui, head, controls);
-        let clicked = self.sounds.show(ui, list.shrink(PADDING), browser.sounds(), &mut self.carried, controls);
-        let deed = if self.shows_keys {
-            keys::show(ui, below, &mut self.keys, shown, down, controls);
-            None
-        } else {
-            let figures = figures(&mut self.figures, shown);
-            self.pads.show(ui, below.expand(2.0), (shown, figures, down), &mut self.carried, controls)
-        };
+        let clicked = self.sounds.show(ui, list.shrink(PADDING), browser.sounds(), controls);
         let key = self.pads.chosen();
-        let figures = figures(&mut self.figures, shown);
-        let deed = self.detail.show(ui, detail.shrink(PADDING), key, (shown, figures), controls).or(deed);
-        shown.follow(key);
-        let put_here = clicked.map(|sound| Deed::Drop { carried: Carried::Sound(sound), key });
+        let figures = self.figures.of(shown);
+        // Before the pads, which choose another: what is typed for this one is taken first.
+        let mut deed = self.detail.show(ui, detail.shrink(PADDING), key, (shown, figures), controls);
+        if self.shows_keys {
+            keys::show(ui, below, &mut self.keys, shown, down, controls);
+        } else {
+            deed = self.pads.show(ui, below.expand(2.0), (shown, figures, down), controls).or(deed);
+        }
+        shown.follow(self.pads.chosen());
+        let put_here = clicked.map(|sound| Deed::Drop(Arc::new(Carried::Sound(sound)), key));
         if let Some(deed) = put_here.or(deed) {
             self.detail.leave(controls);
             self.carry_out(ui, deed, shown, controls);
@@ -138,31 +166,28 @@ impl KitPage {
 
     fn carry_out(&mut self, ui: &Ui, deed: Deed, shown: &Shown, controls: &mut Controls) {
         match deed {
-            Deed::Drop { carried: Carried::Sound(sound), key } => {
-                let Playable::Preset(preset) = &sound.playable else { return };
-                change(format!("{} on {}", preset.name, name_of(key)), controls, |kit| put(kit, key, preset));
-                self.pads.choose(key);
-                self.audition.strike(key, VELOCITY, ui.input(|input| input.time), controls.params.link());
-            }
-            Deed::Drop { carried: Carried::Pad(from), key } if from != key => {
-                let copy = shown.kit().and_then(|kit| edit::pad(kit, from)).cloned();
-                if ui.input(|input| input.modifiers.command) {
-                    change(format!("copy {} to {}", name_of(from), note_name(key)), controls, |kit| {
-                        set(kit, key, copy.clone());
-                    });
-                } else {
-                    let what = format!("{} to {}", name_of(from), note_name(key));
-                    change(what, controls, |kit| swap(kit, [from, key]));
+            Deed::Drop(carried, key) => match &*carried {
+                Carried::Sound(sound) => {
+                    let Playable::Preset(preset) = &sound.playable else { return };
+                    change(format!("{} on {}", preset.name, name_of(key)), controls, |kit| put(kit, key, preset));
+                    self.pads.choose(key);
+                    self.audition.strike(key, VELOCITY, ui.input(|input| input.time), controls.params.link());
                 }
-                self.pads.choose(key);
-            }
-            Deed::Drop { .. } => {}
-            Deed::Empty(key) => {
-                // A kit without pads would be none.
-                if shown.kit().is_some_and(|kit| kit.pads.len() > 1) {
-                    change(format!("{} emptied", name_of(key)), controls, |kit| set(kit, key, None));
+                Carried::Pad(from, loaded) if *from != key && Arc::ptr_eq(loaded, shown.loaded()) => {
+                    let (way, what) = ([*from, key], format!("{} to {}", name_of(*from), note_name(key)));
+                    match ui.input(|input| input.modifiers.command) {
+                        true => change(format!("copy {what}"), controls, |kit| copy(kit, way)),
+                        false => change(what, controls, |kit| swap(kit, way)),
+                    }
+                    self.pads.choose(key);
                 }
+                Carried::Pad(..) => {}
+            },
+            // A kit without pads would be none.
+            Deed::Empty(key) if shown.kit().is_some_and(|kit| kit.pads.len() > 1) => {
+                change(format!("{} emptied", name_of(key)), controls, |kit| set(kit, key, None));
             }
+            Deed::Empty(_) => {}
         }
     }
 
@@ -176,7 +201,6 @@ impl KitPage {
         controls: &mut Controls,
     ) -> Option<Request> {
         let palette = controls.palette;
-        self.figures = None;
         palette.paint_panel(ui.painter(), rect);
         let (head, below) = rect.shrink(PADDING).split_top_bottom_at_y(rect.top() + PADDING + HEAD);
         let make = Rect::from_min_size(head.min, vec2(96.0, HEAD - 4.0));
@@ -189,7 +213,9 @@ impl KitPage {
             && let Playable::Preset(preset) = controls.params.state().playable
         {
             self.release(controls.params.link());
-            controls.history.load(Playable::Kit(edit::kit_of(preset)), controls.params, controls.host);
+            controls.history.begin(controls.params);
+            load(Playable::Kit(edit::kit_of(preset)), controls.params, controls.host);
+            controls.history.end("a kit of this sound", controls.params);
             return None;
         }
         let help = Rect::from_min_size(pos2(head.right() - 22.0, head.top()), vec2(22.0, HEAD - 4.0));
@@ -208,14 +234,4 @@ fn show_help(ui: &Ui, rect: Rect, controls: &mut Controls) -> Option<Request> {
         *controls.hint = Hint::new("Manual", "What this page does: kits");
     }
     response.clicked().then_some(Request::Manual)
-}
-
-/// The figures of the kit's sounds, made anew only when another kit is loaded.
-fn figures<'a>(kept: &'a mut Option<(Arc<Loaded>, Vec<Figure>)>, shown: &Shown) -> &'a [Figure] {
-    if kept.as_ref().is_none_or(|(loaded, _)| !Arc::ptr_eq(loaded, shown.loaded())) {
-        let sounds = shown.kit().map_or(&[][..], |kit| &kit.sounds);
-        let of = |(_, preset): &(String, Preset)| small_figure(&preset.patch.modes, preset.guide.family);
-        *kept = Some((shown.loaded().clone(), sounds.iter().map(of).collect()));
-    }
-    kept.as_ref().map_or(&[], |(_, figures)| figures)
 }

@@ -9,9 +9,11 @@ use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::grid::velocity;
 use crate::editor::keyboard::held_key::HeldKey;
 use crate::editor::theme::{RADIUS, SMALL, TEXT};
+use crate::editor::widgets::carried;
 use crate::editor::widgets::text::line;
 use crate::link::Link;
-use egui::{Align2, Id, Key, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use crate::loaded::Loaded;
+use egui::{Align2, DragAndDrop, Id, Key, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use sprung::params::Param;
 use sprung::preset::catalogue::Listed;
 use sprung::sound::Pad;
@@ -24,20 +26,18 @@ const COUNT: u8 = ROW * ROW;
 /// The gains at the ends of a pad's bar, in dB.
 const GAINS: [f32; 2] = [-36.0, 12.0];
 
-/// What is being dragged.
+/// What is being dragged; egui keeps it.
 #[derive(Clone)]
 pub(super) enum Carried {
-    Pad(u8),
+    /// A pad of this kit.
+    Pad(u8, Arc<Loaded>),
     Sound(Arc<Listed>),
 }
 
 /// What the user has done to a pad.
 pub(super) enum Deed {
     /// Something was let go over it.
-    Drop {
-        carried: Carried,
-        key: u8,
-    },
+    Drop(Arc<Carried>, u8),
     Empty(u8),
 }
 
@@ -92,43 +92,49 @@ impl Pads {
         ui: &Ui,
         rect: Rect,
         (shown, figures, down): (&Shown, &[Figure], u128),
-        carried: &mut Option<Carried>,
         controls: &mut Controls,
     ) -> Option<Deed> {
         let group = controls.value(Param::Choke.info());
         let kit = &shown.loaded().kit;
         let choke = |key: u8| kit.pad(key).map_or(0, |pad| kit.choke(pad, group));
-        let pointer = ui.input(|input| input.pointer.latest_pos());
+        let (pointer, is_released) = ui.input(|input| (input.pointer.latest_pos(), input.pointer.any_released()));
+        let carried = DragAndDrop::payload::<Carried>(ui.ctx());
+        let focused = ui.memory(|memory| memory.focused());
+        let empties = ui.input(|input| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace));
         let size = rect.size() / f32::from(ROW);
-        let (mut touched, mut deed, mut over) = (None, None, None);
+        let (mut touched, mut deed, chosen) = (None, None, self.chosen);
         for key in self.first..=self.keys()[1] {
             let (column, row) = ((key - self.first) % ROW, ROW - 1 - (key - self.first) / ROW);
             let cell = Rect::from_min_size(rect.min + vec2(f32::from(column), f32::from(row)) * size, size).shrink(2.0);
             let response = ui.interact(cell, Id::unique(("pad", key)), Sense::click_and_drag());
             let pad = kit.pad(key);
             let name = pad.map(|pad| shown.pad_name(pad)).unwrap_or_default();
-            let is_chosen = key == self.chosen;
+            let is_chosen = key == chosen;
             response.widget_info(|| {
                 WidgetInfo::selected(Role::Button, true, is_chosen, format!("Pad {} {name}", note_name(key)).trim())
             });
             let is_under = pointer.is_some_and(|at| cell.contains(at));
             if is_under {
-                over = Some(key);
                 *controls.hint = Hint::new(note_name(key), about(key, shown, group));
             }
-            if response.is_pointer_button_down_on() && carried.is_none() {
-                self.chosen = key;
-                if is_under && pad.is_some() {
+            if response.is_pointer_button_down_on() && carried.is_none() && pad.is_some() {
+                if is_under {
                     touched = pointer.map(|at| (key, velocity(cell, at)));
-                } else if pad.is_some() {
-                    *carried = Some(Carried::Pad(key));
+                } else {
+                    DragAndDrop::set_payload(ui.ctx(), Carried::Pad(key, shown.loaded().clone()));
                 }
-            } else if response.clicked() {
+            }
+            // At the end, so that what is typed for another pad has been taken by then.
+            if response.clicked() || response.drag_stopped() && is_under {
                 self.chosen = key;
             }
-            let pressed = |key| ui.input(|input| input.key_pressed(key));
-            if response.has_focus() && (pressed(Key::Delete) || pressed(Key::Backspace)) && pad.is_some() {
+            let has_key = focused == Some(response.id)
+                || focused.is_none() && is_chosen && pointer.is_some_and(|at| rect.contains(at));
+            if empties && has_key && pad.is_some() {
                 deed = Some(Deed::Empty(key));
+            }
+            if let Some(carried) = carried.as_ref().filter(|_| is_under && is_released) {
+                deed = Some(Deed::Drop(carried.clone(), key));
             }
             let group = choke(key);
             let face = Face {
@@ -139,24 +145,19 @@ impl Pads {
                 group,
                 is_down: down >> key & 1 == 1 || self.held.key() == Some(key),
                 is_chosen,
-                is_mate: group > 0 && group == choke(self.chosen),
+                is_mate: group > 0 && group == choke(chosen),
                 is_aim: is_under && carried.is_some(),
                 has_focus: response.has_focus(),
             };
             face.paint(ui, cell, controls);
         }
         self.held.follow(touched, controls.params.link());
-        if ui.input(|input| input.pointer.any_released()) {
-            let dropped = carried.take().zip(over);
-            deed = dropped.map(|(carried, key)| Deed::Drop { carried, key }).or(deed);
-        }
-        if let (Some(carried), Some(at)) = (&carried, pointer) {
-            let name = match carried {
-                Carried::Pad(key) => name_of(*key),
+        if let Some(carried) = carried {
+            let name = match &*carried {
+                Carried::Pad(key, _) => name_of(*key),
                 Carried::Sound(sound) => sound.name().to_owned(),
             };
-            paint_carried(ui, Rect::from_min_size(at + vec2(10.0, -10.0), vec2(120.0, 22.0)), &name, controls);
-            ui.ctx().set_cursor_icon(egui::CursorIcon::Grabbing);
+            carried::paint(ui, &name, controls.palette.accent, controls.palette);
         }
         deed
     }
@@ -220,12 +221,4 @@ impl Face<'_> {
         painter.rect_filled(level.with_max_x(level.left() + share * level.width()), 1.0, colour);
         painter.circle_filled(place.center() + vec2(0.5 * pad.pan * place.width(), 0.0), 2.5, text);
     }
-}
-
-/// The name of what is being dragged, beside the pointer.
-fn paint_carried(ui: &Ui, rect: Rect, name: &str, controls: &Controls) {
-    let palette = controls.palette;
-    let painter = ui.ctx().layer_painter(egui::LayerId::new(egui::Order::Tooltip, Id::unique("carried")));
-    painter.rect(rect, RADIUS, palette.raised, Stroke::new(1.0, palette.accent), StrokeKind::Inside);
-    line(&painter, rect.shrink2(vec2(6.0, 0.0)), Align2::LEFT_CENTER, name, TEXT, palette.text);
 }

@@ -28,7 +28,6 @@ impl SoundList {
         ui: &mut Ui,
         rect: Rect,
         sounds: &Sounds,
-        carried: &mut Option<Carried>,
         controls: &mut Controls,
     ) -> Option<Arc<Listed>> {
         let palette = controls.palette;
@@ -60,9 +59,7 @@ impl SoundList {
                     if response.clicked() {
                         clicked = Some(sound.clone());
                     }
-                    if response.drag_started() {
-                        *carried = Some(Carried::Sound(sound.clone()));
-                    }
+                    response.dnd_set_drag_payload(Carried::Sound(sound.clone()));
                     let picture = row.with_max_x(row.left() + PICTURE);
                     if let Some(figure) = sounds.figure(sound) {
                         face::paint(ui.painter(), picture.shrink2(vec2(2.0, 3.0)), figure, &[], None, palette);

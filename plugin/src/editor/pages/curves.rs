@@ -8,12 +8,12 @@ use sprung::params::{PARAMS, Param, ParamInfo};
 use sprung::units::ratio_from_semitones;
 
 /// Share of an envelope's picture for the sustain, which has no duration.
-const SUSTAIN: f64 = 0.2;
+pub(in crate::editor) const SUSTAIN: f64 = 0.2;
 /// Number of points of each curved stage.
 const POINTS: usize = 16;
 
 /// Draws the picture of a section, if it has one.
-pub(super) fn paint(painter: &Painter, rect: Rect, section: &[ParamInfo], controls: &Controls) {
+pub(in crate::editor) fn paint(painter: &Painter, rect: Rect, section: &[ParamInfo], controls: &Controls) {
     let palette = controls.palette;
     let value = |param: Param| controls.value(param.info());
     let first = section[0].param;
@@ -65,10 +65,15 @@ pub(super) fn paint(painter: &Painter, rect: Rect, section: &[ParamInfo], contro
     painter.add(egui::Shape::line(points, Stroke::new(1.5, colour)));
 }
 
+/// The lengths of an envelope's delay, attack, hold, decay and release in its picture, from the values of its rows.
+pub(in crate::editor) fn lengths(value: &dyn Fn(usize) -> f64) -> [f64; 5] {
+    [0, 1, 2, 3, 5].map(|row| value(row).max(0.0).sqrt())
+}
+
 /// An envelope from the values of its rows: delay, attack, hold, decay, sustain, release, curve. The width of a stage
 /// is proportional to the square root of its time, so that short stages stay visible beside long ones.
 fn envelope(rect: Rect, value: &dyn Fn(usize) -> f64) -> Vec<Pos2> {
-    let [delay, attack, hold, decay, release] = [0, 1, 2, 3, 5].map(|row| value(row).max(0.0).sqrt());
+    let [delay, attack, hold, decay, release] = lengths(value);
     let (sustain, bend) = (value(4) / 100.0, ratio_from_semitones(12.0 * -0.04 * value(6)));
     let total = (delay + attack + hold + decay + release).max(1e-6) / (1.0 - SUSTAIN);
     let stages = [

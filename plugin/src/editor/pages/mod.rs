@@ -1,10 +1,10 @@
 //! The way of the sound and the page of its selected part: sections of parameters, the body, the tuning, the devices.
 
-mod curves;
+pub(super) mod curves;
 mod devices;
 mod outlines;
 pub(super) mod path;
-mod sections;
+pub(super) mod sections;
 pub(super) mod tuning;
 mod voices;
 
@@ -12,7 +12,6 @@ use crate::editor::body::page::BodyPage;
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::lamps;
-use crate::editor::routes;
 use crate::editor::theme::GAP;
 use crate::editor::theme::layout::Layout;
 use crate::editor::widgets::buttons::tab;
@@ -20,12 +19,12 @@ use crate::link::Link;
 use egui::{Rect, Ui, pos2, vec2};
 use nice_plug_core::context::PluginApi;
 use path::Part;
+use sections::PAGES;
 use sprung::params::PARAMS;
 use tuning::TuningPage;
 
 /// The manual's page for each page, in their order.
-const TOPICS: [&str; 9] =
-    ["exciters", "bodies", "modulation", "modulation", "space", "tuning", "bodies", "tuning", "window"];
+const TOPICS: [&str; 7] = ["exciters", "bodies", "space", "tuning", "bodies", "tuning", "window"];
 /// Side of the button of the manual.
 const HELP: f32 = 22.0;
 /// Smallest width at which the voices fit beside the page's sections.
@@ -91,10 +90,6 @@ impl Pages {
         let request = self.path(ui, layout.path, is_preset, controls);
         let (rect, (part, page)) = (layout.sections, self.part);
         let said = match part {
-            "Routes" => {
-                routes::list::show(ui, rect, shown.patch(), shown.guide(), is_preset, controls);
-                None
-            }
             "Model" => self.body.show(ui, rect, shown, controls),
             "Devices" => {
                 devices::show(ui, rect, controls);
@@ -108,7 +103,7 @@ impl Pages {
                     voices::show(ui.painter(), rect.with_min_x(left.right() + GAP), voices, controls);
                 }
                 let about = (shown.patch(), shown.guide(), is_preset);
-                sections::show(ui, left, page, (part, std::mem::take(&mut self.is_new)), about, controls);
+                sections::show(ui, left, PAGES[page], (part, std::mem::take(&mut self.is_new)), about, controls);
                 None
             }
         };

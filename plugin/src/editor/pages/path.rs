@@ -2,6 +2,7 @@
 
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::lamps::{self, Lamp};
+use crate::editor::routes::carry;
 use crate::editor::theme::{GAP, RADIUS, SMALL, TEXT};
 use crate::editor::widgets::text;
 use egui::{Align2, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
@@ -10,15 +11,14 @@ use egui::{Align2, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, po
 pub(super) type Part = (&'static str, usize);
 
 /// The page of the devices, which only the standalone program has.
-const DEVICES: Part = ("Devices", 8);
+const DEVICES: Part = ("Devices", 6);
 
-/// Parts by panel and column. The sound takes its way through all panels but the last.
-const PATH: [&[&[Part]]; 5] = [
-    &[&[("Pitch", 1), ("Voices", 5), ("Tuning", 7)]],
+/// Parts by panel and column, in the order in which the sound takes its way through them.
+const PATH: [&[&[Part]]; 4] = [
+    &[&[("Pitch", 1), ("Voices", 3), ("Tuning", 5)]],
     &[&[("Mallet", 0), ("Pluck", 0), ("Noise", 0)], &[("Bow", 0), ("Breath", 0), ("Input", 0)]],
-    &[&[("Body", 1), ("Model", 6), ("Rattle", 1)]],
-    &[&[("Strings", 4), ("Tremolo", 4), ("Drive", 4)], &[("Tone", 4), ("Space", 4), ("Output", 4)]],
-    &[&[("Modulation", 2), ("Routes", 3)]],
+    &[&[("Body", 1), ("Model", 4), ("Rattle", 1)]],
+    &[&[("Strings", 2), ("Tremolo", 2), ("Drive", 2)], &[("Tone", 2), ("Space", 2), ("Output", 2)]],
 ];
 
 /// Width from which on the text is larger.
@@ -51,29 +51,30 @@ pub(super) fn show(
     controls: &mut Controls,
 ) -> Option<Part> {
     let palette = controls.palette;
-    let mut panels = PATH.map(<[_]>::to_vec);
+    let mut panels = PATH.to_vec();
     if is_alone {
-        panels[PATH.len() - 1].push(&[DEVICES]);
+        panels.push(&[&[DEVICES]]);
     }
     let size = if rect.width() < WIDE { SMALL } else { TEXT };
     let width = |column: &[Part]| {
         let texts = column.iter().map(|(name, _)| text::width(ui.painter(), name, size));
         (indent(column) + texts.fold(0.0, f32::max) + 2.0 * MARGIN).ceil()
     };
-    let widths = panels.each_ref().map(|panel| panel.iter().map(|column| width(column)).sum::<f32>() + 2.0 * MARGIN);
+    let whole = |panel: &&[&[Part]]| panel.iter().map(|column| width(column)).sum::<f32>() + 2.0 * MARGIN;
+    let widths: Vec<f32> = panels.iter().map(whole).collect();
     let rest = rect.width() - widths.iter().sum::<f32>();
-    let gap = (rest / (PATH.len() - 1) as f32).clamp(GAP / 2.0, 12.0 * GAP);
+    let gap = (rest / (panels.len() - 1) as f32).clamp(GAP / 2.0, 12.0 * GAP);
     let (mut left, mut clicked) = (rect.left(), None);
     for (place, (panel, panel_width)) in panels.iter().zip(widths).enumerate() {
         let frame = Rect::from_min_size(pos2(left, rect.top()), vec2(panel_width, 3.0 * ROW + 2.0));
         palette.paint_panel(ui.painter(), frame);
-        if place < PATH.len() - 2 {
+        if place < PATH.len() - 1 {
             let wire = [frame.right_center(), frame.right_center() + vec2(gap, 0.0)];
             ui.painter().line_segment(wire, Stroke::new(2.0, palette.accent));
         }
         left = frame.right() + gap;
         let mut column_left = frame.left() + MARGIN;
-        for column in panel {
+        for column in *panel {
             let column_width = width(column);
             for (row, part) in column.iter().enumerate() {
                 let corner = pos2(column_left, frame.top() + 1.0 + row as f32 * ROW);
@@ -123,7 +124,7 @@ fn show_part(
     }
     let colour = if is_on || is_selected || is_hovered { palette.text } else { palette.muted };
     text::line(ui.painter(), text, Align2::LEFT_CENTER, name, size, colour);
-    response.clicked()
+    response.clicked() || carry::dwells(ui, rect, controls)
 }
 
 #[cfg(test)]

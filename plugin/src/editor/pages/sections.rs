@@ -15,11 +15,9 @@ use sprung::patch::routes::amount_param;
 use sprung::preset::Guide;
 
 /// The sections of each page, in the order in which sound is made.
-const PAGES: [&[&str]; 6] = [
+pub(super) const PAGES: [&[&str]; 4] = [
     &["Mallet", "Pluck", "Noise", "Bow", "Breath", "Input", "Strike"],
     &["Body", "Rattle", "Pitch"],
-    &["Macros", "LFO 1", "LFO 2", "LFO 3", "Envelope 1", "Envelope 2"],
-    &["Routes"],
     &["Strings", "Tremolo", "Drive", "Tone", "Space", "Output"],
     &["Voices", "Control"],
 ];
@@ -32,11 +30,11 @@ pub(super) fn shows(page: usize, section: &str) -> bool {
 }
 
 /// The parameters of a section.
-type Section = &'static [ParamInfo];
+pub(in crate::editor) type Section = &'static [ParamInfo];
 
-/// The sections of a page.
-fn sections(page: usize) -> impl Iterator<Item = Section> {
-    PARAMS.chunk_by(|a, b| a.section == b.section).filter(move |rows| shows(page, rows[0].section))
+/// The sections of these names.
+pub(in crate::editor) fn sections(names: &[&str]) -> impl Iterator<Item = Section> {
+    PARAMS.chunk_by(|a, b| a.section == b.section).filter(|rows| names.contains(&rows[0].section))
 }
 
 /// The name of a parameter within its section: without the section's name, and for a macro, the preset's name for it.
@@ -58,7 +56,7 @@ fn short_name(info: &ParamInfo, guide: &Guide) -> String {
 pub(super) fn show(
     ui: &mut Ui,
     rect: Rect,
-    page: usize,
+    names: &'static [&'static str],
     (selected, is_new): (&str, bool),
     (patch, guide, is_preset): (&Patch, &Guide, bool),
     controls: &mut Controls,
@@ -70,7 +68,7 @@ pub(super) fn show(
     };
     let acts = |lamp: &Lamp| !is_preset || lamp.is_on(controls) || is_raised(lamp);
     let is_on = |section: Section| lamps::of(section[0].section).is_none_or(acts);
-    let shown: Vec<(Section, bool)> = sections(page)
+    let shown: Vec<(Section, bool)> = sections(names)
         .map(|section| (section, is_on(section)))
         .filter(|(section, is_on)| *is_on || section[0].section == selected)
         .collect();
@@ -82,7 +80,7 @@ pub(super) fn show(
     let cell_width = ((rect.width() - gaps) / count.max(1) as f32).floor().clamp(least, most);
     let width = count as f32 * cell_width + gaps;
     let mut inner = ui.new_child(UiBuilder::new().id_salt("sections").max_rect(rect));
-    ScrollArea::horizontal().id_salt(page).auto_shrink(false).show(&mut inner, |ui| {
+    ScrollArea::horizontal().id_salt(names).auto_shrink(false).show(&mut inner, |ui| {
         let (area, _) = ui.allocate_exact_size(vec2(width, rect.height()), egui::Sense::hover());
         let mut left = area.left();
         for (section, is_on) in shown {
@@ -110,36 +108,53 @@ pub(super) fn show(
                 Rect::from_min_size(corner, vec2(width, TITLE_HEIGHT - 6.0))
             };
             curves::paint(ui.painter(), picture, section, controls);
-            for (place, info) in section.iter().enumerate() {
-                let (column, row) = (place % columns(section), place / columns(section));
-                let offset = vec2(column as f32 * cell_width, row as f32 * CELL_HEIGHT);
-                let corner = panel.min + vec2(PADDING, TITLE_HEIGHT) + offset;
-                let cell = Rect::from_min_size(corner, vec2(cell_width, CELL_HEIGHT - 4.0)).shrink2(vec2(1.0, 0.0));
-                let ring = Ring::of(info, &patch.routes, controls);
-                let name = short_name(info, guide);
-                if info.unit == Unit::Choice {
-                    choice::show(ui, cell, info, &name, controls);
-                } else {
-                    knob::show(ui, cell, info, &name, &ring, controls);
-                }
-            }
+            let grid = Rect::from_min_size(panel.min + vec2(PADDING, TITLE_HEIGHT), vec2(cell_width, CELL_HEIGHT));
+            knobs(ui, grid, columns(section), section, (patch, guide), controls);
         }
     });
+}
+
+/// Shows the parameters of a section in columns, from a first cell on.
+pub(in crate::editor) fn knobs(
+    ui: &mut Ui,
+    first: Rect,
+    columns: usize,
+    section: Section,
+    (patch, guide): (&Patch, &Guide),
+    controls: &mut Controls,
+) {
+    for (place, info) in section.iter().enumerate() {
+        let offset = vec2((place % columns) as f32 * first.width(), (place / columns) as f32 * first.height());
+        let cell = Rect::from_min_size(first.min + offset, first.size() - vec2(0.0, 4.0)).shrink2(vec2(1.0, 0.0));
+        let ring = Ring::of(info, &patch.routes, controls);
+        let name = short_name(info, guide);
+        if info.unit == Unit::Choice {
+            choice::show(ui, cell, info, &name, controls);
+        } else {
+            knob::show(ui, cell, info, &name, &ring, controls);
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::editor::motion::sources::section_of;
+    use sprung::patch::routes::Source;
 
     #[test]
     fn every_parameter_is_on_one_page() {
-        let mut found: Vec<&str> = (0..PAGES.len()).flat_map(sections).flatten().map(|info| info.id).collect();
+        // Those of sources are on the face of what moves, as are the routes.
+        let mut moving: Vec<&str> = Source::ALL.iter().filter_map(|source| section_of(*source)).collect();
+        moving.dedup();
+        let pages = || PAGES.into_iter().chain([&moving[..], &["Routes"]]);
+        let mut found: Vec<&str> = pages().flat_map(sections).flatten().map(|info| info.id).collect();
         let mut all: Vec<&str> = PARAMS.iter().map(|info| info.id).collect();
         found.sort_unstable();
         all.sort_unstable();
         assert_eq!(found, all);
-        for (page, names) in PAGES.iter().enumerate() {
-            assert_eq!(sections(page).count(), names.len(), "{names:?}");
+        for names in pages() {
+            assert_eq!(sections(names).count(), names.len(), "{names:?}");
         }
     }
 

@@ -2,11 +2,10 @@
 
 use crate::editor::binding;
 use crate::editor::controls::{Controls, Learning};
-use crate::editor::routes::{change, source_name};
+use crate::editor::routes::add;
 use egui::{Key, Ui};
 use sprung::params::ParamInfo;
-use sprung::patch::routes::{MAX_ROUTES, Route, Source};
-use sprung::preset::Playable;
+use sprung::patch::routes::Source;
 use std::time::Duration;
 
 /// Time between two checks for a movement.
@@ -52,20 +51,7 @@ pub(crate) fn follow(ui: &Ui, controls: &mut Controls) -> Option<String> {
 
 /// Adds a route from a source. Its amount moves the knob to the end of its travel. Returns a message.
 fn learn(source: Source, info: &'static ParamInfo, controls: &mut Controls) -> String {
-    let Playable::Preset(preset) = controls.params.state().playable else {
-        return "a kit’s sounds have routes of their own".to_owned();
-    };
-    let routes = &preset.patch.routes;
-    let name = source_name(source, &preset.guide);
-    if let Some((place, _)) = routes.iter().find(|(_, route)| route.source == source && route.destination == info.param)
-    {
-        return format!("{name} modulates {} already: route {}", info.name, place + 1);
-    }
-    let Some(place) = (0..MAX_ROUTES).find(|place| routes.get(*place).is_none()) else {
-        return "all sixteen routes are taken".to_owned();
-    };
     let position = controls.position(info);
     let travel = if 1.0 - position >= LEAST { 1.0 - position } else { -position };
-    change(place, Some(Route::linear(source, info.param)), Some((100.0 * travel).round()), controls);
-    format!("{name} modulates {}: route {}", info.name, place + 1)
+    add(source, info, (100.0 * travel).round(), controls)
 }

@@ -1,5 +1,6 @@
 //! Routes: their names, and the menus that make, change and remove them.
 
+pub(super) mod carry;
 pub(super) mod learn;
 pub(super) mod list;
 
@@ -15,6 +16,10 @@ use sprung::preset::{Guide, Playable};
 
 /// The amount of a new route, in per cent.
 const AMOUNT: f32 = 25.0;
+
+/// Why a route cannot be added.
+const OF_KITS: &str = "a kit’s sounds have routes of their own";
+const ALL_TAKEN: &str = "all sixteen routes are taken";
 
 /// The name of a source as shown to the user; for a macro, the preset's name for it.
 pub(super) fn source_name(source: Source, guide: &Guide) -> String {
@@ -109,24 +114,38 @@ fn button(
 }
 
 /// The part of a knob's menu that adds a route to its parameter from a chosen source.
-pub(super) fn menu(ui: &mut Ui, info: &ParamInfo, controls: &mut Controls) {
+pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Controls) {
     if !info.is_modulatable() {
         return;
     }
     ui.menu_button("Modulate by", |ui| {
         let Playable::Preset(preset) = controls.params.state().playable else {
-            ui.label("a kit’s sounds have routes of their own");
+            ui.label(OF_KITS);
             return;
         };
-        let Some(place) = (0..MAX_ROUTES).find(|place| preset.patch.routes.get(*place).is_none()) else {
-            ui.label("all sixteen routes are taken");
+        if preset.patch.routes.iter().count() == MAX_ROUTES {
+            ui.label(ALL_TAKEN);
             return;
-        };
+        }
         if let Some(source) = sources(ui, &preset.guide) {
-            change(place, Some(Route::linear(source, info.param)), Some(AMOUNT), controls);
+            add(source, info, AMOUNT, controls);
             ui.close();
         }
     });
+}
+
+/// Adds a route from a source to a parameter, unless there is one. Returns a message.
+fn add(source: Source, info: &'static ParamInfo, amount: f32, controls: &mut Controls) -> String {
+    let Playable::Preset(preset) = controls.params.state().playable else { return OF_KITS.to_owned() };
+    let routes = &preset.patch.routes;
+    let name = source_name(source, &preset.guide);
+    if let Some((place, _)) = routes.iter().find(|(_, route)| route.source == source && route.destination == info.param)
+    {
+        return format!("{name} modulates {} already: route {}", info.name, place + 1);
+    }
+    let Some(place) = (0..MAX_ROUTES).find(|place| routes.get(*place).is_none()) else { return ALL_TAKEN.to_owned() };
+    change(place, Some(Route::linear(source, info.param)), Some(amount), controls);
+    format!("{name} modulates {}: route {}", info.name, place + 1)
 }
 
 fn sources(ui: &mut Ui, guide: &Guide) -> Option<Source> {
@@ -159,7 +178,7 @@ fn destinations(ui: &mut Ui) -> Option<Param> {
 }
 
 /// Sets or removes a route, and optionally sets its amount. A new route never takes what a former one has left in its place.
-pub(super) fn change(place: usize, route: Option<Route>, amount: Option<f32>, controls: &mut Controls) {
+fn change(place: usize, route: Option<Route>, amount: Option<f32>, controls: &mut Controls) {
     let state = controls.params.state();
     let Playable::Preset(mut preset) = state.playable else { return };
     controls.history.begin(controls.params);

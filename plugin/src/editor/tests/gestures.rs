@@ -208,7 +208,7 @@ fn a_route_is_added_by_a_right_click_and_changed_on_its_page() {
     assert_eq!((route.source, route.destination), (Source::Lfo1, Param::MalletSpeed));
     assert_eq!(stage.value(amount_param(place)), 25.0);
     assert!(is_one_gesture(&stage.host.calls(), amount_param(place).info().name));
-    stage.harness.get_by_role_and_label(Role::Tab, "Routes").click();
+    stage.harness.get_by_role_and_label(Role::Tab, "Motion").click();
     stage.harness.run_steps(3);
     stage.button(&format!("Route {}: lfo1 › Mallet speed", place + 1));
     stage.button("Remove");
@@ -222,7 +222,7 @@ fn a_route_is_added_by_a_right_click_and_changed_on_its_page() {
 #[test]
 fn a_free_place_shows_no_amount_and_leaves_none_to_its_next_route() {
     let mut stage = Stage::new();
-    stage.harness.get_by_role_and_label(Role::Tab, "Routes").click();
+    stage.harness.get_by_role_and_label(Role::Tab, "Motion").click();
     stage.harness.run_steps(3);
     let routes = |stage: &Stage| stage.params.loaded().kit.sounds()[0].patch().routes;
     let has_knob = |stage: &Stage, place: usize| {

@@ -5,6 +5,7 @@ use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::window::Face;
 use crate::link::Touch;
+use crate::state::State;
 use egui::{Event, Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use sprung::params::Param;
@@ -181,4 +182,73 @@ fn the_body_is_that_of_the_pad_that_was_struck() {
         band.passes(3);
         assert!(matches!(band.heard[..], [.., Touch::Down { key: struck, .. }] if struck == key), "{:?}", band.heard);
     }
+}
+
+#[test]
+fn the_values_of_one_sound_go_with_it_and_end_with_it() {
+    let mut stage = at("Kick", SIZE, Theme::Dark);
+    let Playable::Preset(kick) = stage.params.state().playable else { panic!("a preset") };
+    stage.button("Make a kit of this sound");
+    stage.params.knobs()[Param::Decay as usize].turn(0.7);
+    let turned = stage.params.state().values;
+    let (snare, aim) = (stage.sound("Snare"), stage.place("D2"));
+    stage.drag(snare, aim - snare, Modifiers::NONE);
+    let kit = stage.kit();
+    assert_eq!(kit.sounds[0].1.patch.values, turned, "beside another, the first sound is as it was");
+    assert_ne!(turned, kick.patch.values);
+    // Alone again, it has its values; and a sound in its place has its own.
+    let snare = stage.place("D2");
+    stage.drag(snare, vec2(0.0, 0.0), Modifiers::NONE);
+    stage.button("Empty this pad");
+    assert_eq!(stage.params.state().values, turned);
+    let (marimba, aim) = (stage.sound("Marimba"), stage.place("C2"));
+    stage.drag(marimba, aim - marimba, Modifiers::NONE);
+    let Ok(Playable::Preset(expected)) = Playable::find("Marimba") else { panic!("a preset") };
+    assert_eq!((stage.kit().sounds.len(), stage.params.state().values), (1, expected.patch.values));
+}
+
+#[test]
+fn what_is_typed_for_a_pad_stays_with_it() {
+    let mut stage = at("Acoustic Kit", SIZE, Theme::Dark);
+    let (kick, snare) = (stage.place("C2"), stage.place("D2"));
+    let type_name = |stage: &mut Stage, name: &str| {
+        stage.harness.get_by_label("Name of the pad").click();
+        stage.harness.run_steps(2);
+        stage.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        stage.harness.event(Event::Text(name.to_owned()));
+        stage.harness.run_steps(2);
+    };
+    stage.drag(kick, vec2(0.0, 0.0), Modifiers::NONE);
+    type_name(&mut stage, "Boom");
+    stage.drag(snare, vec2(0.0, 0.0), Modifiers::NONE);
+    assert_eq!([36, 38].map(|key| stage.pad(key).unwrap().1.name), ["Boom", "Snare"]);
+    type_name(&mut stage, "Other");
+    stage.harness.key_press(Key::Escape);
+    stage.harness.run_steps(2);
+    assert_eq!(stage.pad(38).unwrap().1.name, "Snare", "Escape keeps the name");
+    // The chosen pad is emptied by a key while the pointer is over the pads.
+    stage.harness.event(Event::PointerMoved(snare));
+    stage.harness.key_press(Key::Delete);
+    stage.harness.run_steps(2);
+    assert_eq!((stage.pad(38), stage.pad(36).is_some()), (None, true));
+}
+
+#[test]
+fn a_drag_ends_with_escape_and_nothing_sounds_on_when_another_sound_is_loaded() {
+    let mut band = Band::of(at("Acoustic Kit", SIZE, Theme::Dark));
+    let before = band.stage.kit();
+    let (kick, snare) = (band.stage.place("C2"), band.stage.place("D2"));
+    band.press(kick, true);
+    band.event(Event::PointerMoved(snare));
+    band.stage.harness.key_press(Key::Escape);
+    band.passes(2);
+    band.press(snare, false);
+    assert_eq!(band.stage.kit(), before);
+    band.press(kick, true);
+    assert_eq!(band.stage.params.link().telemetry.keys(0), 1 << 36);
+    let state = State::new(Playable::find("Marimba").unwrap(), 0, band.stage.params.view());
+    band.stage.params.load(state.into());
+    band.passes(3);
+    assert_eq!(band.stage.params.link().telemetry.keys(0), 0);
+    band.press(kick, false);
 }

@@ -12,6 +12,7 @@ mod kits;
 mod learning;
 mod loading;
 mod mode_edits;
+mod motion;
 mod moving;
 mod paging;
 mod pictures;

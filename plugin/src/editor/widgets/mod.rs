@@ -1,6 +1,7 @@
 //! Knobs, buttons, fields and lines of text: what the parts of the window are made of.
 
 pub(super) mod buttons;
+pub(super) mod carried;
 pub(super) mod choice;
 pub(super) mod knob;
 pub(super) mod number;

@@ -32,6 +32,7 @@ impl Number<'_> {
         let mut value = self.value;
         let widget = DragValue::new(&mut value)
             .range(min..=max)
+            .clamp_existing_to_range(false)
             .speed(self.speed)
             .update_while_editing(false)
             .custom_formatter(move |value, _| written(value))

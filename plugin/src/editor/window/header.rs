@@ -3,9 +3,10 @@
 use super::meter;
 use super::variation::{self, VariationRequest};
 use crate::editor::controls::{Controls, Hint};
+use crate::editor::routes::carry;
 use crate::editor::theme::{BRAND, GAP, Palette, SMALL, TEXT, Theme, ZOOMS};
 use crate::editor::widgets::buttons::{Look, button, tab};
-use crate::editor::widgets::text::line;
+use crate::editor::widgets::text::{line, width};
 use crate::state::View;
 use egui::{Align2, Id, Popup, PopupCloseBehavior, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use std::collections::BTreeSet;
@@ -18,21 +19,24 @@ pub(in crate::editor) enum Face {
     Play,
     /// All of the sound: modes, pictures, every parameter.
     Sound,
+    /// What moves: sources, routes, curves.
+    Motion,
     /// The pads of a kit.
     Kit,
 }
 
 /// The faces with their names and what they are for.
-const FACES: [(Face, &str, &str); 3] = [
+const FACES: [(Face, &str, &str); 4] = [
     (Face::Play, "Play", "The body, what moves it, and the few knobs that matter."),
-    (Face::Sound, "Sound", "All of the sound: its modes, moving pictures, every parameter, routes and tuning."),
+    (Face::Sound, "Sound", "All of the sound: its modes, moving pictures, every parameter, and tuning."),
+    (Face::Motion, "Motion", "What moves what: sources to be dragged to knobs, routes, envelopes and oscillators."),
     (Face::Kit, "Kit", "Sounds on pads: drag them there, and set pitch, level, place, choke group and output."),
 ];
 
 /// A request of the user's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Request {
-    /// Show the body to play, or all of the sound.
+    /// Show this face.
     Show(Face),
     /// Load the preset at this distance in the list.
     Step(isize),
@@ -79,33 +83,34 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
         line(ui.painter(), next(72.0), Align2::LEFT_CENTER, "Sprung", BRAND, palette.accent_text);
     }
     for (face, name, help) in FACES {
-        let response = tab(ui, next(if is_narrow { 34.0 } else { 46.0 }), name, face == header.face, palette);
+        let place = next(width(ui.painter(), name, SMALL + 1.0) + if is_narrow { 6.0 } else { 20.0 });
+        let response = tab(ui, place, name, face == header.face, palette);
         if response.hovered() {
             *controls.hint = Hint::new(name, help);
         }
-        if response.clicked() {
+        if response.clicked() || face != header.face && carry::dwells(ui, place, controls) {
             request = Some(Request::Show(face));
         }
     }
-    let sound = next(if is_narrow { 196.0 } else { 300.0 });
+    let sound = next(if is_narrow { 156.0 } else { 290.0 });
     request = request.or(name_field(ui, sound, header, is_narrow, controls));
     let undo = controls.history.undo_name().map(|name| format!("Undo {name}"));
     let redo = controls.history.redo_name().map(|name| format!("Redo {name}"));
     let enabled = |name: &Option<String>| if name.is_some() { Look::Plain } else { Look::Disabled };
     let on = |is_on: bool| if is_on { Look::On } else { Look::Off };
-    let width = |wide: f32| if is_narrow { wide - 8.0 } else { wide };
+    let shrunk = |wide: f32| if is_narrow { wide - 8.0 } else { wide };
     let buttons = [
         (
             "Browse",
             "Browse",
-            width(58.0),
+            shrunk(58.0),
             on(header.is_browsing),
             Request::Browse,
             "Find another sound, by family, words and favourites.",
         ),
-        ("Save", "Save", width(44.0), Look::Plain, Request::Save, "Save this sound under a name."),
-        ("Undo", "Undo", width(46.0), enabled(&undo), Request::Undo, "Take the last change back."),
-        ("Redo", "Redo", width(46.0), enabled(&redo), Request::Redo, "Make the change again that was taken back."),
+        ("Save", "Save", shrunk(44.0), Look::Plain, Request::Save, "Save this sound under a name."),
+        ("Undo", "Undo", shrunk(46.0), enabled(&undo), Request::Undo, "Take the last change back."),
+        ("Redo", "Redo", shrunk(46.0), enabled(&redo), Request::Redo, "Make the change again that was taken back."),
         (
             if header.is_b { "B" } else { "A" },
             "A or B",
@@ -117,7 +122,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
         (
             "Copy",
             "Copy to the other version",
-            width(46.0),
+            shrunk(46.0),
             Look::Plain,
             Request::Copy,
             "Make the other version a copy of this one.",

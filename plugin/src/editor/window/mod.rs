@@ -22,9 +22,10 @@ use crate::editor::keyboard::piano::Piano;
 use crate::editor::kit::KitPage;
 use crate::editor::manual::Manual;
 use crate::editor::modes::ModesView;
+use crate::editor::motion::MotionPage;
 use crate::editor::pages::{self, Pages};
 use crate::editor::play::PlayPage;
-use crate::editor::routes::learn;
+use crate::editor::routes::{carry, learn};
 use crate::editor::theme::layout::Layout;
 use crate::editor::theme::{Theme, install_fonts};
 use crate::params::SprungParams;
@@ -72,6 +73,7 @@ pub(super) struct Window {
     face: Face,
     play: PlayPage,
     pages: Pages,
+    motion: MotionPage,
     kit: KitPage,
     manual: Manual,
     fitting: Fitting,
@@ -117,6 +119,7 @@ impl Window {
             face: Face::default(),
             play: PlayPage::default(),
             pages: Pages::default(),
+            motion: MotionPage::default(),
             kit: KitPage::default(),
             manual: Manual::default(),
             fitting: Fitting::default(),
@@ -229,6 +232,12 @@ impl Window {
                     self.message = message;
                 }
             }
+            None if self.face == Face::Motion => {
+                if self.motion.show(ui, layout.page(), &self.shown, &mut controls).is_some() {
+                    self.manual.open("modulation");
+                    self.over = Some(Over::Manual);
+                }
+            }
             None if self.face == Face::Kit => {
                 let (page, others) = (layout.page(), (down, &mut self.browser));
                 if self.kit.show(ui, page, &mut self.shown, others, &mut controls).is_some() {
@@ -273,6 +282,7 @@ impl Window {
         let played = is_alone.then(|| self.computer_keyboard.follow(ui, params.link())).flatten();
         let bound = binding::follow(ui, self.browser.library(), &mut controls);
         let learnt = bound.or_else(|| learn::follow(ui, &mut controls));
+        let learnt = learnt.or_else(|| carry::follow(ui, self.shown.guide(), &mut controls));
         if let Some(messages) = learnt.or_else(|| params.link().take_messages()).or(played) {
             self.message = messages;
         }

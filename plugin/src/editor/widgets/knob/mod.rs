@@ -6,7 +6,7 @@ pub(super) mod menu;
 use super::text::line;
 use super::typing::{type_value, typed};
 use crate::editor::controls::{Controls, Hint};
-use crate::editor::routes::Ring;
+use crate::editor::routes::{Ring, carry};
 use crate::editor::theme::{KNOB, SMALL};
 use crate::marks::Mark;
 use egui::accesskit::{Action, ActionData};
@@ -84,6 +84,7 @@ fn turn(ui: &Ui, turned: Rect, value: Rect, travel: f32, info: &'static ParamInf
         about.current_text_value = Some(text.clone());
         about
     });
+    carry::aim(ui, turned.union(value), info, controls);
     let is_hovered = response.hovered() || response.dragged() || value_response.hovered();
     let (mark, said) = controls.mark(info);
     if is_hovered {

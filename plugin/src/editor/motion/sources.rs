@@ -1,0 +1,140 @@
+//! The sources of routes: each can be dragged to a knob; a click shows the knobs of those that have any.
+
+use crate::editor::controls::shown::Shown;
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::pages::curves;
+use crate::editor::pages::sections::sections;
+use crate::editor::routes::source_name;
+use crate::editor::theme::{RADIUS, SMALL, TEXT};
+use crate::editor::widgets::text::{line, width};
+use egui::{
+    Align2, CursorIcon, Id, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+};
+use sprung::patch::routes::Source;
+
+/// The sources that have a curve, with their sections.
+const DRAWN: [(Source, &str); 5] = [
+    (Source::Lfo1, "LFO 1"),
+    (Source::Lfo2, "LFO 2"),
+    (Source::Lfo3, "LFO 3"),
+    (Source::Envelope1, "Envelope 1"),
+    (Source::Envelope2, "Envelope 2"),
+];
+/// Height of a source with a curve, and of one without.
+const TILE: f32 = 34.0;
+const CHIP: f32 = 20.0;
+const SPACE: f32 = 4.0;
+/// Height of a title, and the space around the text of a source.
+const TITLE: f32 = 18.0;
+const AROUND: f32 = 14.0;
+
+/// The section whose knobs a source has.
+pub(in crate::editor) fn section_of(source: Source) -> Option<&'static str> {
+    let drawn = DRAWN.iter().find(|(own, _)| *own == source).map(|(_, section)| *section);
+    drawn.or(source.id().starts_with("macro").then_some("Macros"))
+}
+
+/// Shows the sources. Returns the section of one that was clicked.
+pub(super) fn show(
+    ui: &mut Ui,
+    rect: Rect,
+    chosen: &str,
+    shown: &Shown,
+    controls: &mut Controls,
+) -> Option<&'static str> {
+    let mut clicked = None;
+    let mut inner = ui.new_child(UiBuilder::new().id_salt("sources").max_rect(rect));
+    ScrollArea::vertical().id_salt("sources").auto_shrink(false).show(&mut inner, |ui| {
+        let names: Vec<(Source, String)> =
+            Source::ALL.iter().map(|source| (*source, source_name(*source, shown.guide()))).collect();
+        let whole = ui.available_width() - SPACE;
+        let is_drawn = |source: Source| DRAWN.iter().any(|(own, _)| *own == source);
+        let is_macro = |source: Source| section_of(source) == Some("Macros");
+        let played = names.iter().filter(|(source, _)| section_of(*source).is_none());
+        let macros = names.iter().filter(|(source, _)| is_macro(*source));
+        let mut places = Vec::new();
+        let mut top = TITLE;
+        for (source, name) in names.iter().filter(|(source, _)| is_drawn(*source)) {
+            places.push((*source, name, Rect::from_min_size(pos2(0.0, top), vec2(whole, TILE))));
+            top += TILE + SPACE;
+        }
+        let titles = [("Drag one to a knob, on any page", 0.0), ("Played", top), ("Macros", 0.0)];
+        let mut titles = titles.to_vec();
+        top += TITLE;
+        for (number, group) in [played.collect::<Vec<_>>(), macros.collect()].into_iter().enumerate() {
+            if number == 1 {
+                titles[2].1 = top;
+                top += TITLE;
+            }
+            let mut left = 0.0;
+            for (source, name) in group {
+                let size = vec2((width(ui.painter(), name, TEXT) + AROUND).min(whole), CHIP);
+                if left > 0.0 && left + size.x > whole {
+                    (left, top) = (0.0, top + CHIP + SPACE);
+                }
+                places.push((*source, name, Rect::from_min_size(pos2(left, top), size)));
+                left += size.x + SPACE;
+            }
+            top += CHIP + SPACE;
+        }
+        let (area, _) = ui.allocate_exact_size(vec2(whole, top), Sense::hover());
+        let offset = area.min.to_vec2();
+        for (title, top) in titles {
+            let place = Rect::from_min_size(pos2(0.0, top), vec2(whole, TITLE - 2.0)).translate(offset);
+            line(ui.painter(), place, Align2::LEFT_CENTER, title, SMALL, controls.palette.muted);
+        }
+        for (source, name, place) in places {
+            if show_source(ui, place.translate(offset), (source, name), chosen, shown, controls) {
+                clicked = section_of(source).or(clicked);
+            }
+        }
+    });
+    clicked
+}
+
+/// Shows a source. Returns whether it was clicked.
+fn show_source(
+    ui: &Ui,
+    rect: Rect,
+    (source, name): (Source, &str),
+    chosen: &str,
+    shown: &Shown,
+    controls: &mut Controls,
+) -> bool {
+    let palette = controls.palette;
+    let response = ui.interact(rect, Id::unique(("source", source.id())), Sense::click_and_drag());
+    let section = section_of(source);
+    let is_chosen = section == Some(chosen);
+    let used = shown.patch().routes.iter().filter(|(_, route)| route.source == source || route.scale == Some(source));
+    let used = used.count();
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, format!("Source {name}")));
+    if shown.preset().is_some() {
+        response.dnd_set_drag_payload(source);
+    }
+    if response.hovered() {
+        ui.ctx().set_cursor_icon(CursorIcon::Grab);
+        let routes = match used {
+            0 => "moves nothing yet".to_owned(),
+            1 => "has one route".to_owned(),
+            count => format!("has {count} routes"),
+        };
+        *controls.hint =
+            Hint::new(name, format!("It {routes}. Drag it to a knob; held over a tab, it opens that page."));
+    }
+    let edge = match (response.has_focus(), is_chosen, used > 0) {
+        (true, ..) => Stroke::new(1.5, palette.text),
+        (_, true, _) => Stroke::new(1.5, palette.accent),
+        (.., true) => Stroke::new(1.0, palette.modulation),
+        _ => Stroke::new(1.0, palette.line),
+    };
+    let fill = if response.hovered() { palette.raised } else { palette.panel };
+    ui.painter().rect(rect, RADIUS, fill, edge, StrokeKind::Inside);
+    let inside = rect.shrink2(vec2(6.0, 2.0));
+    let colour = if used > 0 || is_chosen { palette.text } else { palette.muted };
+    let named = line(ui.painter(), inside, Align2::LEFT_CENTER, name, TEXT, colour);
+    if let Some((_, section)) = DRAWN.iter().find(|(own, _)| *own == source) {
+        let picture = inside.with_min_x((named.right() + 10.0).max(inside.center().x)).shrink2(vec2(0.0, 5.0));
+        sections(&[*section]).for_each(|section| curves::paint(ui.painter(), picture, section, controls));
+    }
+    response.clicked()
+}

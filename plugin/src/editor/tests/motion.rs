@@ -1,0 +1,136 @@
+//! The face of what moves: sources that are dragged to knobs of any face, and curves that are drawn.
+
+use super::pictures::{Stage, compare, compare_small, facing, finish};
+use super::sounding::Band;
+use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
+use crate::editor::window::Face;
+use egui::{Event, Modifiers, PointerButton, Pos2, Role, vec2};
+use egui_kittest::kittest::Queryable as _;
+use sprung::params::Param;
+use sprung::patch::routes::{MAX_ROUTES, Route, Routes, Source};
+
+fn at(sound: &str, size: [u32; 2], theme: Theme) -> Stage {
+    facing(Face::Motion, sound, size, 1.0, theme)
+}
+
+impl Stage {
+    fn routes(&self) -> Routes {
+        self.params.loaded().kit.sounds()[0].patch().routes
+    }
+
+    fn middle(&self, role: Role, name: &str) -> Pos2 {
+        self.harness.get_by_role_and_label(role, name).rect().center()
+    }
+
+    fn button_at(&mut self, pos: Pos2, pressed: bool) {
+        let button = PointerButton::Primary;
+        self.harness.event(Event::PointerMoved(pos));
+        self.harness.run_steps(1);
+        self.harness.event(Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE });
+        self.harness.run_steps(2);
+    }
+
+    /// Takes a source, holds it over tabs, and lets it go over a knob.
+    fn carry(&mut self, source: &str, tabs: &[&str], knob: &str) {
+        let from = self.middle(Role::Button, &format!("Source {source}"));
+        self.button_at(from, true);
+        self.harness.event(Event::PointerMoved(from + vec2(12.0, 0.0)));
+        self.harness.run_steps(2);
+        for tab in tabs {
+            let tab = self.middle(Role::Tab, tab);
+            self.harness.event(Event::PointerMoved(tab));
+            self.harness.run_steps(30);
+        }
+        let to = self.middle(Role::Slider, knob);
+        self.button_at(to, false);
+        self.harness.run_steps(2);
+    }
+}
+
+#[test]
+fn pictures_of_the_face_are_as_accepted() {
+    for (theme, size, name) in [
+        (Theme::Dark, SIZE, "motion"),
+        (Theme::Dark, LEAST_SIZE, "motion-least"),
+        (Theme::Light, LEAST_SIZE, "motion-light-least"),
+        (Theme::HighContrast, LEAST_SIZE, "motion-high-contrast-least"),
+    ] {
+        let mut band = Band::of(at("Church Bell", size, theme));
+        if size == SIZE {
+            band.stage.button("Source envelope1");
+            band.strike(&[60, 64]);
+            band.passes(2);
+        }
+        compare(name, &mut band.stage.harness);
+    }
+    for theme in [Theme::Light, Theme::HighContrast] {
+        compare_small(&format!("motion-{}", theme.id()), 2, &mut at("Violin", SIZE, theme).harness);
+    }
+    compare_small("motion-twice", 4, &mut facing(Face::Motion, "Violin", SIZE, 2.0, Theme::Dark).harness);
+    finish();
+}
+
+#[test]
+fn a_source_that_is_dragged_to_a_knob_of_another_face_modulates_it() {
+    let mut stage = at("Marimba", SIZE, Theme::Dark);
+    let before = stage.routes();
+    let place = (0..MAX_ROUTES).find(|place| before.get(*place).is_none()).unwrap();
+    stage.carry("random", &["Sound", "Bow"], "Bow force");
+    assert_eq!(stage.routes().get(place), Some(Route::linear(Source::Random, Param::BowForce)));
+    assert_eq!(stage.params.loaded().kit.sounds()[0].patch().get(sprung::patch::routes::amount_param(place)), 25.0);
+    stage.button("Undo");
+    assert_eq!(stage.routes(), before);
+    // The same route is not made twice, and what is let go beside a knob makes none.
+    stage.harness.get_by_role_and_label(Role::Tab, "Motion").click();
+    stage.harness.run_steps(3);
+    stage.carry("velocity", &["Sound", "Mallet"], "Mallet hardness");
+    assert_eq!(stage.routes(), before, "it has this route");
+    stage.harness.get_by_role_and_label(Role::Tab, "Motion").click();
+    stage.harness.run_steps(3);
+    let from = stage.middle(Role::Button, "Source lfo2");
+    stage.button_at(from, true);
+    stage.button_at(from + vec2(0.0, 500.0), false);
+    assert_eq!(stage.routes(), before);
+}
+
+#[test]
+fn an_envelope_is_drawn_and_each_corner_is_one_step() {
+    let mut stage = at("Church Bell", SIZE, Theme::Dark);
+    stage.button("Source envelope1");
+    for (param, by) in [
+        (Param::Envelope1Attack, vec2(40.0, 0.0)),
+        (Param::Envelope1Decay, vec2(30.0, 0.0)),
+        (Param::Envelope1Sustain, vec2(0.0, -20.0)),
+        (Param::Envelope1Release, vec2(-30.0, 0.0)),
+    ] {
+        let info = param.info();
+        let value = |stage: &Stage| {
+            stage.params.loaded().value(param as usize, stage.params.knobs()[param as usize].position())
+        };
+        let before = value(&stage);
+        let corner = stage.middle(Role::Button, &format!("Corner {}", info.name));
+        stage.drag(corner, by, Modifiers::NONE);
+        let moved = stage.middle(Role::Button, &format!("Corner {}", info.name));
+        assert!(value(&stage) > before, "{}", info.name);
+        assert!(
+            (moved - corner - by).length() < 4.0,
+            "{}: the corner is where the pointer is: {corner} {moved}",
+            info.name
+        );
+        stage.button("Undo");
+        assert_eq!(value(&stage), before, "{}", info.name);
+    }
+}
+
+#[test]
+fn an_oscillator_is_dragged_to_another_start_and_faded_in() {
+    let mut stage = at("Church Bell", SIZE, Theme::Dark);
+    stage.button("Source lfo1");
+    for (param, by) in [(Param::Lfo1Phase, vec2(-40.0, 0.0)), (Param::Lfo1Fade, vec2(60.0, 0.0))] {
+        let position = |stage: &Stage| stage.params.knobs()[param as usize].position();
+        let before = position(&stage);
+        let corner = stage.middle(Role::Button, &format!("Corner {}", param.info().name));
+        stage.drag(corner, by, Modifiers::NONE);
+        assert!(position(&stage) > before, "{}", param.info().name);
+    }
+}
