@@ -1,11 +1,11 @@
 //! A change of a body in progress: the sound is made again at intervals while a number is dragged; all is one undo step.
 
-use super::origin::Origin;
 use crate::editor::controls::Controls;
 use crate::editor::controls::gestures::{Gestures, touch};
 use crate::loaded::Loaded;
 use sprung::params::Param;
 use sprung::preset::Playable;
+use sprung_picture::Origin;
 use std::sync::Arc;
 use std::time::Instant;
 

@@ -2,10 +2,7 @@
 
 pub(super) mod edit;
 pub(super) mod face;
-pub(super) mod figure;
-pub(super) mod form;
 pub(super) mod numbers;
 pub(super) mod origin;
 pub(super) mod page;
-pub(super) mod shape;
 pub(super) mod view;

@@ -1,8 +1,8 @@
 //! The numbers of bodies and of their joint on the page of the body: names, values with units, and help texts.
 
-use super::origin::Origin;
 use sprung::sound::bodies::{Body, FIELDS};
 use sprung::sound::pairs::LINK_FIELDS;
+use sprung_picture::Origin;
 
 /// One of two bodies, or the joint between them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::edit::BodyEdit;
 use super::numbers::{Number, Part, written};
-use super::origin::{Origin, OriginShown, model_name};
+use super::origin::OriginShown;
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::keyboard::audition::Audition;
@@ -16,6 +16,7 @@ use egui::{Align2, Id, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use sprung::preset::LINK_KINDS;
 use sprung::sound::bodies::{MATERIALS, Model};
 use sprung::units::number_in_unit;
+use sprung_picture::{Origin, model_name};
 
 /// Width of the part with model and material.
 const SIDE: f32 = 188.0;

@@ -2,9 +2,6 @@
 
 use super::edit::rest;
 use super::face;
-use super::form::Form;
-use super::origin::Origin;
-use super::shape::BodyShape;
 use crate::editor::controls::gestures::touch;
 use crate::editor::controls::shown::{Shown, Subject};
 use crate::editor::controls::{Controls, Hint};
@@ -15,6 +12,7 @@ use crate::loaded::Loaded;
 use egui::{CursorIcon, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo};
 use sprung::params::Param;
 use sprung::sound::bodies::Point;
+use sprung_picture::{BodyShape, Form, Origin};
 use std::f32::consts::TAU;
 use std::sync::Arc;
 

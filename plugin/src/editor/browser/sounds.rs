@@ -1,10 +1,9 @@
 //! The sounds to choose from: the factory's and the user's own, by family, words and favourites.
 
-use crate::editor::body::figure::Figure;
-use crate::editor::body::shape::small_figure;
 use sprung::preset::catalogue::{Catalogue, Listed};
 use sprung::preset::library::Library;
 use sprung::preset::{Family, Playable};
+use sprung_picture::{Figure, small_figure};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;

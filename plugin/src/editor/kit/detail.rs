@@ -3,7 +3,6 @@
 use super::edit::{change, edited, name_of, pad, set};
 use super::pads::Deed;
 use crate::editor::body::face;
-use crate::editor::body::figure::Figure;
 use crate::editor::body::numbers::written;
 use crate::editor::controls::gestures::touch;
 use crate::editor::controls::shown::Shown;
@@ -19,6 +18,7 @@ use sprung::params::Param;
 use sprung::preset::{Playable, Preset, with_ending};
 use sprung::sound::Pad;
 use sprung::units::{note_name, number_in_unit, parse_key};
+use sprung_picture::Figure;
 use std::sync::Arc;
 
 /// Height of a row with a name and a choice, and width of the name.

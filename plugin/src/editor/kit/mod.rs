@@ -6,8 +6,6 @@ mod keys;
 mod pads;
 mod sounds;
 
-use crate::editor::body::figure::Figure;
-use crate::editor::body::shape::small_figure;
 use crate::editor::browser::Browser;
 use crate::editor::controls::files::load;
 use crate::editor::controls::shown::Shown;
@@ -27,6 +25,7 @@ use pads::{Carried, Deed, Pads};
 use sounds::SoundList;
 use sprung::preset::{Playable, Preset};
 use sprung::units::note_name;
+use sprung_picture::{Figure, small_figure};
 use std::sync::Arc;
 
 /// Shares of the width that sounds and the chosen pad have, and their least and greatest widths.

@@ -3,7 +3,6 @@
 use super::edit::name_of;
 use super::keys::about;
 use crate::editor::body::face;
-use crate::editor::body::figure::Figure;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::grid::velocity;
@@ -18,6 +17,7 @@ use sprung::params::Param;
 use sprung::preset::catalogue::Listed;
 use sprung::sound::Pad;
 use sprung::units::note_name;
+use sprung_picture::Figure;
 use std::sync::Arc;
 
 /// Pads in a row, and in all.

@@ -2,8 +2,7 @@
 
 use crate::editor::body::edit::BodyEdit;
 use crate::editor::body::face;
-use crate::editor::body::figure::{Figure, tint};
-use crate::editor::body::origin::{Origin, OriginShown, model_name};
+use crate::editor::body::origin::OriginShown;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{GAP, RADIUS, SMALL};
@@ -11,6 +10,7 @@ use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::line;
 use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 use sprung::sound::bodies::{Body, MATERIALS, Model};
+use sprung_picture::{Figure, Origin, model_name, tint};
 
 /// Models with tiles, and their names there. All others are in the list below.
 const TILES: [(&str, &str); 9] = [

@@ -2,7 +2,6 @@
 
 use super::pictures::{Stage, compare_page, finish, stage};
 use super::sounding::Band;
-use crate::editor::body::origin::Origin;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
 use egui::{Event, Key, Modifiers, PointerButton, Role, vec2};
@@ -10,6 +9,7 @@ use egui_kittest::kittest::Queryable as _;
 use sprung::params::Param;
 use sprung::preset::Playable;
 use sprung::preset::library::Library;
+use sprung_picture::Origin;
 
 impl Stage {
     fn origin(&self) -> Origin {

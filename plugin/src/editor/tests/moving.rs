@@ -3,8 +3,6 @@
 use super::fake_host::Call;
 use super::pictures::{compare, finish};
 use super::sounding::Band;
-use crate::editor::body::form::Form;
-use crate::editor::body::origin::Origin;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
 use egui::{Event, Pos2, vec2};
@@ -12,6 +10,7 @@ use egui_kittest::kittest::Queryable as _;
 use sprung::engine::EventKind;
 use sprung::params::Param;
 use sprung::sound::bodies::Point;
+use sprung_picture::{Form, Origin};
 
 impl Band {
     fn show_body(&mut self) {

@@ -2,13 +2,13 @@
 
 use super::pictures::{compare, compare_exactly, compare_small, facing, finish};
 use super::sounding::Band;
-use crate::editor::body::origin::Origin;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::window::Face;
 use crate::link::Touch;
 use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use sprung::params::Param;
+use sprung_picture::Origin;
 
 impl Band {
     pub(super) fn click(&mut self, role: Role, name: &str) {

@@ -1,29 +1,32 @@
 //! How a body looks at rest: its form, its thickness and the colour of its material.
 
-use super::form::Form;
-use egui::Color32;
+use crate::form::Form;
+use ecolor::Color32;
 use sprung::sound::bodies::{Body, Model, Point};
 
 /// What is painted of a body.
-pub(crate) struct Figure {
-    pub(super) form: Form,
+pub struct Figure {
+    /// Its form.
+    pub form: Form,
     /// How many points there are along `x` and along `y`.
-    pub(super) grid: [usize; 2],
-    pub(super) points: Vec<Point>,
-    pub(super) tint: Color32,
+    pub grid: [usize; 2],
+    /// The points, those along `x` one after the other.
+    pub points: Vec<Point>,
+    /// The colour of its material in white light.
+    pub tint: Color32,
     /// Thickness of a line as a share of the picture's shorter side; 0 for a string. It only tells bars from tubes.
-    pub(super) thickness: f32,
+    pub thickness: f32,
 }
 
 impl Figure {
     /// The figure of a body in a large picture.
-    pub(super) fn of(body: &Body) -> Self {
+    pub fn of(body: &Body) -> Self {
         let form = Form::of(&body.model);
         Self::with_grid(body, form, form.grid())
     }
 
     /// The figure of a body in a picture of the size of a letter or two.
-    pub(crate) fn small(body: &Body) -> Self {
+    pub fn small(body: &Body) -> Self {
         let form = Form::of(&body.model);
         let grid = match form {
             Form::Line => [33, 1],
@@ -47,7 +50,7 @@ impl Figure {
 }
 
 /// The colour of a material in white light.
-pub(crate) fn tint(material: &str) -> Color32 {
+pub fn tint(material: &str) -> Color32 {
     let [red, green, blue] = match material {
         "steel" | "wire" | "snare_wire" => [168, 174, 184],
         "aluminium" => [196, 199, 205],

@@ -1,8 +1,8 @@
 //! The body that is drawn for a sound: its form, and each mode's shape on it.
 
-use super::figure::Figure;
-use super::form::Form;
-use super::origin::{Origin, model_name};
+use crate::figure::Figure;
+use crate::form::Form;
+use crate::origin::{Origin, model_name};
 use sprung::patch::ModeTable;
 use sprung::preset::Family;
 use sprung::sound::bodies::{Body, Model};
@@ -15,15 +15,17 @@ const DRAWN: [usize; 2] = [64, 32];
 const NEAR: [f64; 2] = [0.6, 5.0];
 
 /// A body to draw.
-pub(super) struct BodyShape {
-    pub(super) origin: Origin,
-    pub(super) figure: Figure,
+pub struct BodyShape {
+    /// Where the modes come from.
+    pub origin: Origin,
+    /// How it looks at rest.
+    pub figure: Figure,
     /// For each mode of the sound, its shape at the points; none if the mode belongs to a body that is not drawn.
     shapes: Vec<Option<Vec<f32>>>,
     /// Rotation speed of each mode in slow motion, as a multiple of the lowest mode's.
-    pub(super) speeds: Vec<f32>,
+    pub speeds: Vec<f32>,
     /// Description of the drawn body.
-    pub(super) caption: String,
+    pub caption: String,
 }
 
 /// The model that a table of modes is drawn as, and its name.
@@ -42,7 +44,7 @@ fn model_of(family: Option<Family>) -> (&'static str, Model) {
 }
 
 /// The figure of a sound's body in a picture of the size of a letter or two: of its model's, or of one that suits its family.
-pub(crate) fn small_figure(modes: &ModeTable, family: Option<Family>) -> Figure {
+pub fn small_figure(modes: &ModeTable, family: Option<Family>) -> Figure {
     match Origin::of(modes).with_places().body() {
         Some(body) => Figure::small(body),
         None => Figure::small(&Body::new(model_of(family).1)),
@@ -51,7 +53,7 @@ pub(crate) fn small_figure(modes: &ModeTable, family: Option<Family>) -> Figure 
 
 impl BodyShape {
     /// The body of a sound of this family. This is slow: it computes the shapes of all modes.
-    pub(super) fn of(modes: &ModeTable, family: Option<Family>) -> Self {
+    pub fn of(modes: &ModeTable, family: Option<Family>) -> Self {
         let origin = Origin::of(modes).with_places();
         let (body, near, caption) = match &origin {
             Origin::FromBody(body) => ((**body).clone(), NEAR[0], model_name(body.model.id())),
@@ -97,7 +99,7 @@ impl BodyShape {
     }
 
     /// The displacement of each point, for the amplitudes of the modes.
-    pub(super) fn displacements(&self, amplitudes: &[f32]) -> Vec<f32> {
+    pub fn displacements(&self, amplitudes: &[f32]) -> Vec<f32> {
         let mut sum = vec![0.0; self.figure.points.len()];
         for (shape, amplitude) in self.shapes.iter().zip(amplitudes) {
             if let Some(shape) = shape.as_ref().filter(|_| *amplitude != 0.0) {

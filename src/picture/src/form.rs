@@ -1,13 +1,13 @@
 //! The forms of bodies in the picture: where their points are at rest, and which way they move.
 
-use egui::{Pos2, Rect, Vec2, pos2, vec2};
+use emath::{Pos2, Rect, Vec2, pos2, vec2};
 use sprung::sound::bodies::{Model, Point};
 use std::f32::consts::TAU;
 
 /// How steeply the picture looks down on a body: sine and cosine of the angle.
 const LOOK: [f32; 2] = [0.5, 0.866];
 /// The direction from which the picture looks.
-pub(super) const VIEW: [f32; 3] = [0.0, LOOK[1], LOOK[0]];
+pub(crate) const VIEW: [f32; 3] = [0.0, LOOK[1], LOOK[0]];
 /// The outline of a bell from its crown to its rim: height and radius.
 const BELL: [[f32; 2]; 8] =
     [[1.0, 0.0], [0.99, 0.24], [0.91, 0.35], [0.7, 0.39], [0.46, 0.44], [0.25, 0.52], [0.09, 0.62], [0.0, 0.72]];
@@ -17,16 +17,19 @@ const BOWL: [[f32; 2]; 8] =
 
 /// The form of a body. The coordinates of its points are those of [`Model`]: `x` and `y` from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Form {
+pub enum Form {
     /// A string, a bar, the air in a tube.
     Line,
     /// A head or a round plate.
     Round,
     /// A plate, with the length of its side along `x` over that along `y`.
     Plate {
+        /// Length over length.
         aspect: f32,
     },
+    /// A bell, whose rim is below.
     Bell,
+    /// A bowl or a glass, whose rim is above.
     Bowl,
 }
 
@@ -39,7 +42,7 @@ struct Place {
 
 impl Form {
     /// The form of a model.
-    pub(super) fn of(model: &Model) -> Self {
+    pub fn of(model: &Model) -> Self {
         match model {
             Model::Membrane | Model::Timpani(_) | Model::Disc { .. } => Self::Round,
             Model::Plate { aspect, .. } => Self::Plate { aspect: *aspect as f32 },
@@ -51,7 +54,7 @@ impl Form {
     }
 
     /// How many points a picture has along `x` and along `y`.
-    pub(super) fn grid(self) -> [usize; 2] {
+    pub fn grid(self) -> [usize; 2] {
         match self {
             Self::Line => [97, 1],
             Self::Round => [15, 61],
@@ -61,7 +64,7 @@ impl Form {
     }
 
     /// The points of a grid, those along `x` one after the other.
-    pub(super) fn points([columns, rows]: [usize; 2]) -> Vec<Point> {
+    pub fn points([columns, rows]: [usize; 2]) -> Vec<Point> {
         let share = |place: usize, count: usize| if count > 1 { place as f64 / (count - 1) as f64 } else { 0.0 };
         let point = |place: usize| Point { x: share(place % columns, columns), y: share(place / columns, rows) };
         (0..columns * rows).map(point).collect()
@@ -69,7 +72,7 @@ impl Form {
 
     /// Factor for the drawn displacement at a point. A bell's crown hardly moves; its model does not contain this,
     /// since its modes were measured at the rim.
-    pub(super) fn weight(self, point: Point) -> f32 {
+    pub fn weight(self, point: Point) -> f32 {
         if self == Self::Bell { (point.x * point.x) as f32 } else { 1.0 }
     }
 
@@ -93,13 +96,13 @@ impl Form {
     }
 
     /// Where a point is in space: to the right, to the viewer, and up. The displacement is in the picture's unit.
-    pub(super) fn in_space(self, point: Point, displacement: f32) -> [f32; 3] {
+    pub fn in_space(self, point: Point, displacement: f32) -> [f32; 3] {
         let Place { at, normal } = self.place(point);
         std::array::from_fn(|axis| at[axis] + normal[axis] * displacement)
     }
 
     /// Where a point is in the picture. The displacement is in the picture's unit.
-    pub(crate) fn on(self, rect: Rect, point: Point, displacement: f32) -> Pos2 {
+    pub fn on(self, rect: Rect, point: Point, displacement: f32) -> Pos2 {
         let [x, y, z] = self.in_space(point, displacement);
         let [sine, cosine] = LOOK;
         let (unit, middle) = self.scale(rect);
@@ -123,7 +126,7 @@ impl Form {
     }
 
     /// The largest displacement that the picture shows, in its unit.
-    pub(super) fn reach(self, rect: Rect) -> f32 {
+    pub fn reach(self, rect: Rect) -> f32 {
         match self {
             Self::Line => 0.34 * rect.height() / self.scale(rect).0,
             Self::Round | Self::Plate { .. } => 0.28,
@@ -132,12 +135,12 @@ impl Form {
     }
 
     /// Whether a point lies behind others, so that its lines are not drawn and it cannot be touched.
-    pub(super) fn is_behind(self, point: Point) -> bool {
+    pub fn is_behind(self, point: Point) -> bool {
         matches!(self, Self::Bell | Self::Bowl) && self.place(point).normal[1] < -0.05
     }
 
     /// The point at rest that is nearest to a place in the picture, and how far away it is in pixels.
-    pub(super) fn nearest(self, rect: Rect, place: Pos2) -> (Point, f32) {
+    pub fn nearest(self, rect: Rect, place: Pos2) -> (Point, f32) {
         const STEPS: usize = 100;
         let rows = if self == Self::Line { 1 } else { STEPS + 1 };
         let point = |step: usize| Point {

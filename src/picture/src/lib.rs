@@ -1,0 +1,15 @@
+//! What is drawn of a sounding body: its form, the shapes of its modes, and its surface in a light from the left above.
+//!
+//! The plugin's window paints it with egui, the page in a browser on a canvas.
+
+mod figure;
+mod form;
+mod origin;
+mod shape;
+mod surface;
+
+pub use figure::{Figure, tint};
+pub use form::Form;
+pub use origin::{Origin, model_name};
+pub use shape::{BodyShape, small_figure};
+pub use surface::Picture;

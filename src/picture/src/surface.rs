@@ -1,0 +1,163 @@
+//! A body as it is painted: lit from the left above, and glowing where it moves.
+
+use crate::figure::Figure;
+use crate::form::{Form, VIEW};
+use ecolor::{Color32, Rgba};
+use emath::{Pos2, Rect, vec2};
+use sprung::sound::bodies::Point;
+
+/// Where the light comes from: left, in front, above; a unit vector.
+const LIGHT: [f32; 3] = [-0.5, 0.45, 0.74];
+/// Share of the light that comes from everywhere.
+const AMBIENT: f32 = 0.2;
+/// Strength of highlights.
+const GLOSS: f32 = 0.3;
+/// Points of a line that is as thick as a bar: the share of its thickness above the middle, and its light.
+const ROUND: [[f32; 2]; 4] = [[0.5, 0.62], [0.22, 1.15], [-0.2, 0.6], [-0.5, 0.22]];
+
+/// A body as it is painted, in the order of its parts.
+#[derive(Debug, Default)]
+pub struct Picture {
+    /// Points with their colours.
+    pub vertices: Vec<(Pos2, Color32)>,
+    /// Triangles between these, the farthest first.
+    pub triangles: Vec<[u32; 3]>,
+    /// The edges of a surface.
+    pub edges: Vec<Vec<Pos2>>,
+    /// A string, from end to end; empty for all other bodies.
+    pub string: Vec<Pos2>,
+    /// Where it is struck.
+    pub strike: Option<Pos2>,
+}
+
+impl Picture {
+    /// The picture of a figure in a rectangle. Displacements of its points are in the form's unit, none for a body at rest. What moves
+    /// takes on the colour `glow`. Allocates.
+    pub fn of(rect: Rect, figure: &Figure, displacements: &[f32], strike: Option<Point>, glow: Color32) -> Self {
+        let form = figure.form;
+        let mut picture = Self::default();
+        let displaced = |number: usize| displacements.get(number).copied().unwrap_or(0.0);
+        let reach = form.reach(rect);
+        let share = |number: usize| (displaced(number).abs() / reach).min(1.0).sqrt() * 0.85;
+        let colour = |number: usize, light: f32, highlight: f32| {
+            lit(figure.tint, light, highlight).lerp_to_gamma(glow, share(number))
+        };
+        if form == Form::Line {
+            let place = |number: usize| form.on(rect, figure.points[number], displaced(number));
+            let points: Vec<Pos2> = (0..figure.points.len()).map(place).collect();
+            if figure.thickness == 0.0 {
+                picture.string = points;
+            } else {
+                picture.bar(&points, figure.thickness * rect.height().min(rect.width()), colour);
+            }
+        } else {
+            picture.surface(rect, figure, &displaced, colour);
+        }
+        picture.strike = strike.map(|strike| {
+            let at = |point| form.on(rect, point, 0.0);
+            let far = |number: &usize| (at(figure.points[*number]) - at(strike)).length();
+            let nearest = (0..figure.points.len()).min_by(|a, b| far(a).total_cmp(&far(b)));
+            form.on(rect, strike, nearest.map_or(0.0, displaced))
+        });
+        picture
+    }
+
+    /// A line as thick as a bar, round to the light.
+    fn bar(&mut self, points: &[Pos2], thickness: f32, colour: impl Fn(usize, f32, f32) -> Color32) {
+        for (number, point) in points.iter().enumerate() {
+            for [up, light] in ROUND {
+                self.vertices.push((*point - vec2(0.0, up * thickness), colour(number, light, 0.0)));
+            }
+        }
+        let across = ROUND.len() as u32;
+        for first in (0..(points.len() as u32 - 1) * across).filter(|first| (first + 1) % across > 0) {
+            self.triangles.push([first, first + 1, first + across + 1]);
+            self.triangles.push([first, first + across + 1, first + across]);
+        }
+    }
+
+    fn surface(
+        &mut self,
+        rect: Rect,
+        figure: &Figure,
+        displaced: &impl Fn(usize) -> f32,
+        colour: impl Fn(usize, f32, f32) -> Color32,
+    ) {
+        let (form, [columns, rows]) = (figure.form, figure.grid);
+        let places: Vec<[f32; 3]> =
+            (0..columns * rows).map(|number| form.in_space(figure.points[number], displaced(number))).collect();
+        let is_closed = !matches!(form, Form::Plate { .. });
+        let vertex = |number: usize| {
+            let (column, row) = (number % columns, number / columns);
+            let between = |a: usize, b: usize| std::array::from_fn(|axis| places[b][axis] - places[a][axis]);
+            // The first point of a turned form is the same all round: the next ones have its light.
+            let column = if is_closed { column.max(1) } else { column };
+            let [left, right] = [column.saturating_sub(1), (column + 1).min(columns - 1)];
+            let [above, below] = match is_closed {
+                true => [(row + rows - 2) % (rows - 1), (row + 1) % (rows - 1)],
+                false => [row.saturating_sub(1), (row + 1).min(rows - 1)],
+            };
+            let [light, highlight] = light(
+                between(row * columns + left, row * columns + right),
+                between(above * columns + column, below * columns + column),
+            );
+            (form.on(rect, figure.points[number], displaced(number)), colour(number, light, highlight))
+        };
+        self.vertices = (0..columns * rows).map(vertex).collect();
+        // The farthest patches are painted first.
+        let mut patches: Vec<usize> =
+            (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| row * columns + column)).collect();
+        let nearness = |patch: &usize| dot(places[*patch], VIEW) + dot(places[patch + columns + 1], VIEW);
+        patches.sort_by(|a, b| nearness(a).total_cmp(&nearness(b)));
+        for patch in &patches {
+            let corners = [*patch, patch + 1, patch + columns + 1, patch + columns].map(|corner| corner as u32);
+            self.triangles.push([corners[0], corners[1], corners[2]]);
+            self.triangles.push([corners[0], corners[2], corners[3]]);
+        }
+        let at = |column: usize, row: usize| {
+            let number = row * columns + column;
+            form.on(rect, figure.points[number], displaced(number))
+        };
+        let is_hidden = |(column, row): &(usize, usize)| form.is_behind(figure.points[row * columns + column]);
+        let mut edge = |points: Vec<(usize, usize)>| {
+            // The far side of a bell's rim is behind the bell; a bowl is open.
+            for run in points.chunk_by(|a, b| form != Form::Bell || is_hidden(a) == is_hidden(b)) {
+                if form != Form::Bell || !is_hidden(&run[0]) {
+                    self.edges.push(run.iter().map(|(column, row)| at(*column, *row)).collect());
+                }
+            }
+        };
+        edge((0..rows).map(|row| (columns - 1, row)).collect());
+        if !is_closed {
+            edge((0..rows).map(|row| (0, row)).collect());
+            edge((0..columns).map(|column| (column, 0)).collect());
+            edge((0..columns).map(|column| (column, rows - 1)).collect());
+        }
+    }
+}
+
+/// A colour in a light, 1 for that in which the material's colour is seen, with a highlight.
+fn lit(tint: Color32, light: f32, highlight: f32) -> Color32 {
+    let lit = Rgba::from(tint) * light + Rgba::from(Color32::WHITE) * highlight;
+    Color32::from(Rgba::from_rgb(lit.r().min(1.0), lit.g().min(1.0), lit.b().min(1.0)))
+}
+
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The light on a piece of surface with two edges from its corner, seen from either side, and its highlight.
+fn light(along: [f32; 3], across: [f32; 3]) -> [f32; 2] {
+    let axis = |n: usize| {
+        let (u, v) = ((n + 1) % 3, (n + 2) % 3);
+        along[u] * across[v] - along[v] * across[u]
+    };
+    let normal: [f32; 3] = std::array::from_fn(axis);
+    let length = dot(normal, normal).sqrt().max(1e-9).copysign(dot(normal, VIEW));
+    let normal = normal.map(|axis| axis / length);
+    let half: [f32; 3] = std::array::from_fn(|axis| LIGHT[axis] + VIEW[axis]);
+    let glance = dot(normal, half).max(0.0) / dot(half, half).sqrt();
+    // Its sixteenth power.
+    let highlight = (0..4).fold(glance, |power, _| power * power);
+    [AMBIENT + (1.0 - AMBIENT) * 1.25 * dot(normal, LIGHT).max(0.0), GLOSS * highlight]
+}
