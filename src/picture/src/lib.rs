@@ -7,9 +7,11 @@ mod form;
 mod origin;
 mod shape;
 mod surface;
+mod swing;
 
 pub use figure::{Figure, tint};
 pub use form::Form;
 pub use origin::{Origin, model_name};
 pub use shape::{BodyShape, small_figure};
 pub use surface::Picture;
+pub use swing::Swing;

@@ -2,7 +2,7 @@
 
 use sprung::patch::ModeTable;
 use sprung::preset::{body_of_modes, modes_of_body, modes_of_pair, pair_of_modes};
-use sprung::sound::bodies::{Body, Model, Pitch};
+use sprung::sound::bodies::{Body, Model, Pitch, Point};
 use sprung::sound::pairs::{Link, Pair};
 
 /// The origin of a sound's modes.
@@ -66,6 +66,12 @@ impl Origin {
             Self::FromPair(pair) => Some(pair),
             _ => None,
         }
+    }
+
+    /// Lets the body be struck elsewhere, and computes its modes; `None` for a table, or if they cannot be computed.
+    pub fn struck_at(&mut self, point: Point) -> Option<ModeTable> {
+        self.body_mut()?.strike = point;
+        self.modes().ok().flatten()
     }
 
     /// Computes the modes; `None` for a table, which has no body. The error says why the two bodies have no modes.

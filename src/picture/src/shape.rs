@@ -5,7 +5,7 @@ use crate::form::Form;
 use crate::origin::{Origin, model_name};
 use sprung::patch::ModeTable;
 use sprung::preset::Family;
-use sprung::sound::bodies::{Body, Model};
+use sprung::sound::bodies::{Body, Model, Point};
 use sprung::units::semitones_from_ratio;
 
 /// The most modes that are drawn on a line, and on a surface: the grid of points is too coarse for finer shapes.
@@ -98,8 +98,21 @@ impl BodyShape {
         Self { origin, figure, shapes, speeds, caption }
     }
 
+    /// The place nearest to a point at which the body can be struck.
+    pub fn confined(&self, point: Point) -> Point {
+        let rounded = |share: f64| (share * 1000.0).round() / 1000.0;
+        let point = Point { x: rounded(point.x), y: rounded(point.y) };
+        match (self.origin.body(), self.figure.form) {
+            // On a string, the place is counted from the nearer end.
+            (None, _) => Point { x: point.x.min(1.0 - point.x).clamp(0.01, 0.5), y: 0.0 },
+            (Some(body), Form::Line) => Point { y: body.strike.y, ..point },
+            (Some(body), Form::Bell) => Point { x: body.strike.x, ..point },
+            (Some(_), _) => point,
+        }
+    }
+
     /// The displacement of each point, for the amplitudes of the modes.
-    pub fn displacements(&self, amplitudes: &[f32]) -> Vec<f32> {
+    pub(crate) fn displacements(&self, amplitudes: &[f32]) -> Vec<f32> {
         let mut sum = vec![0.0; self.figure.points.len()];
         for (shape, amplitude) in self.shapes.iter().zip(amplitudes) {
             if let Some(shape) = shape.as_ref().filter(|_| *amplitude != 0.0) {

@@ -1,6 +1,7 @@
 // The page: loads the module, starts the audio worklet with the first note, and keeps what is played.
 import { Player, startsNote } from "./player.js";
 import { listen, useMidi } from "./keys.js";
+import { drawBody } from "./body.js";
 import { draw } from "./pictures.js";
 import { renderTake, wav } from "./wav.js";
 
@@ -8,7 +9,9 @@ const element = (id) => document.getElementById(id);
 const SAMPLE_RATE = 48000;
 
 const module = await WebAssembly.compileStreaming(fetch("sprung.wasm"));
-const presets = new Player(module, SAMPLE_RATE).presets();
+// The page’s own player lists presets and draws; it does not sound.
+const own = new Player(module, SAMPLE_RATE);
+const presets = own.presets();
 const state = { take: [], preset: presets.find((preset) => preset.name === "Church Bell") ?? presets[0], key: 60 };
 let node;
 
@@ -21,7 +24,10 @@ async function start() {
   made.connect(context.destination);
   made.onprocessorerror = () => (element("status").textContent = "The audio worklet has failed; reload the page.");
   made.port.onmessage = ({ data }) => {
-    if (data.masses) show(data.masses);
+    if (data.masses) {
+      show(data.masses);
+      swing(data.masses.subarray(1, 65));
+    }
     if (data.played) {
       state.take.push(data.played);
       element("render").disabled = element("forget").disabled = !state.take.some(startsNote);
@@ -43,7 +49,7 @@ function play(key, isOn, velocity = +element("velocity").value) {
   // A velocity of 0 releases the key at medium speed.
   send({ message: [0x90, key, isOn ? velocity : 0] });
   keys.show(key, isOn);
-  if (isOn) state.key = key;
+  if (isOn) [state.key, element("tip").hidden] = [key, true];
 }
 
 const keys = listen(element("keys"), play);
@@ -53,8 +59,19 @@ const show = draw(element("modes"), element("plane"), (pull) => {
   setTimeout(() => play(key, false), 400);
 });
 
+const swing = drawBody(element("body"), own, (place, velocity) => {
+  if (place) {
+    own.play({ strike: place }, 0);
+    send({ strike: place });
+  }
+  const key = state.preset.home;
+  play(key, true, velocity);
+  setTimeout(() => play(key, false), 700);
+});
+
 function choose(preset) {
   state.preset = preset;
+  own.play({ preset: preset.number }, 0);
   state.key = preset.home;
   element("about").textContent = preset.comment;
   element("macros").replaceChildren(...preset.macros.map(slider).filter(Boolean));

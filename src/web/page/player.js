@@ -1,8 +1,11 @@
-// An instance of the module. A take is a list of {frame, preset}, {frame, macro, value} and {frame, message}: a preset’s
-// number, a macro’s number with 0 to 100, or the bytes of a MIDI message, in order of frames from the start. The same take
-// gives the same samples, whatever the lengths of blocks.
+// An instance of the module. A take is a list of {frame, preset}, {frame, strike}, {frame, macro, value} and {frame, message}: a
+// preset’s number, the place at which its body is struck from then on, a macro’s number with 0 to 100, or the bytes of a MIDI
+// message, in order of frames from the start. The same take gives the same samples, whatever the lengths of blocks.
 
 const BLOCK = 1024;
+
+// Whether an event of a take is set between blocks.
+const setsSound = ({ preset, strike }) => preset !== undefined || strike !== undefined;
 
 // Whether an event of a take starts a note.
 export const startsNote = ({ message }) => message && (message[0] & 0xf0) === 0x90 && message[2] > 0;
@@ -34,6 +37,7 @@ export class Player {
   // Plays one event of a take, at an offset into the next block.
   play(event, offset) {
     if (event.preset !== undefined) this.wasm.load(this.synth, event.preset);
+    else if (event.strike !== undefined) this.wasm.strike_at(this.synth, ...event.strike);
     else if (event.macro !== undefined) this.wasm.turn(this.synth, offset, event.macro, event.value);
     else this.wasm.midi(this.synth, offset, event.message[0], event.message[1] ?? 0, event.message[2] ?? 0);
   }
@@ -43,9 +47,9 @@ export class Player {
   render(take, next, left, right) {
     for (let start = 0; start < left.length; ) {
       let frames = Math.min(BLOCK, left.length - start);
-      // A preset is set between blocks, with all events of its frame: a block ends before the first that is in it.
+      // A sound is set between blocks, with all events of its frame: a block ends before the first that is in it.
       for (let n = next; n < take.length && take[n].frame < this.frame + frames; n++) {
-        if (take[n].preset !== undefined && take[n].frame > this.frame) frames = take[n].frame - this.frame;
+        if (setsSound(take[n]) && take[n].frame > this.frame) frames = take[n].frame - this.frame;
       }
       for (; next < take.length && take[next].frame < this.frame + frames; next++) {
         this.play(take[next], take[next].frame - this.frame);
@@ -57,6 +61,19 @@ export class Player {
       this.frame += frames;
     }
     return next;
+  }
+
+  // The body some seconds after the last time, as the module’s `draw` says, for the energies of its modes.
+  draw(energies, width, height, seconds, glow) {
+    this.floats(this.wasm.energies(this.synth), energies.length).set(energies);
+    const length = this.wasm.draw(this.synth, width, height, seconds, glow);
+    return this.floats(this.wasm.numbers(this.synth), length);
+  }
+
+  // The place of the body at a place of its picture; none where it cannot be struck.
+  touch(width, height, x, y) {
+    const isTouched = this.wasm.touch(this.synth, width, height, x, y);
+    return isTouched ? [...this.floats(this.wasm.numbers(this.synth), 2)] : undefined;
   }
 
   // Number of voices, 64 energies and 64 ratios.

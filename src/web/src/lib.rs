@@ -2,8 +2,9 @@
 //!
 //! A page shares no memory with its audio worklet, so each has an instance of the module of its own: the worklet's
 //! instance plays, the page's instance lists the presets and renders takes. Addresses are valid until the next call
-//! that allocates: [`create`], [`presets`] or [`load`].
+//! that allocates: [`create`], [`presets`], [`load`], [`strike_at`], [`draw`] or [`touch`].
 
+mod drawn;
 mod player;
 
 pub use player::BLOCK;
@@ -104,4 +105,59 @@ pub unsafe extern "C" fn samples(player: *mut Player, side: usize) -> *const f32
 pub unsafe extern "C" fn look(player: *mut Player) -> *const f32 {
     // SAFETY: as above.
     unsafe { at(player) }.look().as_ptr()
+}
+
+/// Lets the body of the preset be struck at a place from now on, each coordinate from 0 to 1. Allocates. A table of modes, which has no
+/// body, stays as it is.
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strike_at(player: *mut Player, x: f64, y: f64) {
+    // SAFETY: as above.
+    unsafe { at(player) }.strike_at(x, y);
+}
+
+/// The address of 64 numbers: the energies of the modes with which the body is drawn, to be written.
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn energies(player: *mut Player) -> *mut f32 {
+    // SAFETY: as above.
+    unsafe { at(player) }.drawn().energies.as_mut_ptr()
+}
+
+/// Draws the body of the preset as it is some seconds after the last time, `width` by `height` pixels large, with a colour (0xRRGGBB) for
+/// what moves. Returns how many numbers describe it; [`numbers`] returns their address. They are: how many polygons, and for each the
+/// four corners and red, green and blue; how many lines, and for each how many points, and these; and the place of the strike, if it is
+/// known. Allocates.
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn draw(player: *mut Player, width: f32, height: f32, seconds: f32, glow: u32) -> usize {
+    // SAFETY: as above.
+    unsafe { at(player) }.drawn().draw([width, height], seconds, glow)
+}
+
+/// The address of the last numbers of [`draw`] or [`touch`].
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn numbers(player: *mut Player) -> *const f32 {
+    // SAFETY: as above.
+    unsafe { at(player) }.drawn().numbers.as_ptr()
+}
+
+/// Finds the point of the body that is nearest to a place in the picture, as two [`numbers`] for [`strike_at`]. Returns whether the body
+/// is touched there and can be struck there. Allocates.
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn touch(player: *mut Player, width: f32, height: f32, x: f32, y: f32) -> bool {
+    // SAFETY: as above.
+    unsafe { at(player) }.drawn().touch([width, height], [x, y])
 }

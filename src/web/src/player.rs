@@ -1,14 +1,14 @@
 //! A synth with memory that JavaScript reads and writes.
 
+use crate::drawn::{Drawn, SHOWN};
 use sprung::engine::{Event, EventKind, Snapshot, Synth, midi::parse_message};
 use sprung::patch::routes::macro_param;
 use sprung::preset::Preset;
+use sprung::sound::bodies::Point;
+use sprung_picture::Origin;
 
 /// Frames that can be rendered at once.
 pub const BLOCK: usize = 1024;
-
-/// Number of modes that are shown.
-const SHOWN: usize = 64;
 
 /// Maximum number of messages for a block; further ones are dropped.
 const MESSAGES: usize = 256;
@@ -20,6 +20,9 @@ pub struct Player {
     sides: [[f32; BLOCK]; 2],
     shown: [f32; 1 + 2 * SHOWN],
     text: String,
+    preset: Preset,
+    /// Its body, where it is drawn.
+    drawn: Option<Drawn>,
 }
 
 impl Player {
@@ -27,8 +30,10 @@ impl Player {
         let mut synth = Synth::new(sample_rate, seed);
         synth.reserve_space();
         let (sides, shown) = ([[0.0; BLOCK]; 2], [0.0; 1 + 2 * SHOWN]);
-        let mut player = Self { synth, events: Vec::with_capacity(MESSAGES), sides, shown, text: String::new() };
-        player.load(0);
+        let events = Vec::with_capacity(MESSAGES);
+        let preset = Preset::factory()[0].clone();
+        let mut player = Self { synth, events, sides, shown, text: String::new(), preset, drawn: None };
+        player.take_preset();
         player
     }
 
@@ -50,10 +55,32 @@ impl Player {
     }
 
     pub(crate) fn load(&mut self, preset: usize) {
-        let Some(preset) = Preset::factory_at(preset) else { return };
-        self.synth.set_kit(&preset.kit());
-        let mut ratios = preset.patch.modes.as_slice().iter().map(|mode| mode.ratio);
+        if let Some(preset) = Preset::factory_at(preset) {
+            self.preset = preset.clone();
+            self.take_preset();
+        }
+    }
+
+    /// Lets the body of the preset be struck elsewhere. A table of modes knows nothing of places, and stays as it is.
+    pub(crate) fn strike_at(&mut self, x: f64, y: f64) {
+        let mut origin = Origin::of(&self.preset.patch.modes);
+        let point = Point { x: x.clamp(0.0, 1.0), y: y.clamp(0.0, 1.0) };
+        if let Some(modes) = origin.struck_at(point) {
+            self.preset.patch.modes = modes;
+            self.take_preset();
+        }
+    }
+
+    fn take_preset(&mut self) {
+        self.synth.set_kit(&self.preset.kit());
+        let mut ratios = self.preset.patch.modes.as_slice().iter().map(|mode| mode.ratio);
         self.shown[1 + SHOWN..].fill_with(|| ratios.next().unwrap_or(0.0));
+        self.drawn = None;
+    }
+
+    /// The body of the preset, to be drawn.
+    pub(crate) fn drawn(&mut self) -> &mut Drawn {
+        self.drawn.get_or_insert_with(|| Drawn::new(&self.preset))
     }
 
     pub(crate) fn midi(&mut self, frame: u32, message: [u8; 3]) {
@@ -132,5 +159,28 @@ mod tests {
         };
         assert_ne!(played(0), played(99));
         assert_eq!(played(99), played(7), "the eighth has no name and moves nothing");
+    }
+
+    #[test]
+    fn the_body_is_drawn_where_it_is_struck_and_swings_as_it_sounds() {
+        let mut player = Player::new(48_000.0, 0);
+        player.load(Preset::factory().iter().position(|preset| preset.name == "Church Bell").unwrap());
+        let size = [600.0, 400.0];
+        let still = player.drawn().draw(size, 0.0, 0xff_ff_ff);
+        let before = player.drawn().numbers.clone();
+        assert!(still > 10_000 && before.len() == still && before.iter().all(|number| number.is_finite()));
+        player.drawn().energies[0] = 1.0;
+        assert_eq!(player.drawn().draw(size, 0.3, 0xff_ff_ff), still);
+        assert_ne!(player.drawn().numbers, before);
+        assert!(!player.drawn().touch(size, [1.0, 1.0]), "beside it");
+        assert!(player.drawn().touch(size, [260.0, 330.0]));
+        let [x, y] = player.drawn().numbers[..] else { panic!("a point") };
+        let modes = player.preset.patch.modes.clone();
+        player.strike_at(x.into(), y.into());
+        assert_ne!(player.preset.patch.modes, modes);
+        player.load(Preset::factory().iter().position(|preset| preset.name == "Piccolo").unwrap());
+        let modes = player.preset.patch.modes.clone();
+        player.strike_at(f64::NAN, 2.0);
+        assert_eq!(player.preset.patch.modes, modes, "a table stays as it is");
     }
 }

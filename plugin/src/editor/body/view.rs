@@ -9,15 +9,12 @@ use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::modes::table::replace;
 use crate::editor::theme::RADIUS;
 use crate::loaded::Loaded;
-use egui::{CursorIcon, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo};
+use egui::{CursorIcon, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
 use sprung::params::Param;
 use sprung::sound::bodies::Point;
-use sprung_picture::{BodyShape, Form, Origin};
-use std::f32::consts::TAU;
+use sprung_picture::{BodyShape, Form, Origin, Swing};
 use std::sync::Arc;
 
-/// Cycles per second of the lowest mode in slow motion.
-const TURNS: f32 = 0.8;
 /// How far from the body a click still touches it, in pixels.
 const REACH: f32 = 26.0;
 
@@ -37,10 +34,7 @@ struct Drag {
 #[derive(Default)]
 pub(crate) struct BodyView {
     shape: Option<(Subject, BodyShape)>,
-    /// Phase of each mode, in radians.
-    angles: Vec<f32>,
-    /// The greatest amplitude since the body was at rest.
-    greatest: f32,
+    swing: Swing,
     drag: Option<Drag>,
 }
 
@@ -79,34 +73,12 @@ impl BodyView {
                 subject.0 = drag.loaded.clone();
             }
         }
-        let amplitudes = self.advance(controls.seconds, &shape, energies);
-        let reach = shape.figure.form.reach(rect);
-        let soft = |value: f32| reach * value / (1.0 + value * value).sqrt();
-        let moved: Vec<f32> = shape.displacements(&amplitudes).into_iter().map(soft).collect();
+        let moved = self.swing.advance(controls.seconds, &shape, energies, rect);
         let place = self.drag.as_ref().map(|drag| drag.point).or(strike(&shape, shown, controls));
         face::paint(ui.painter(), rect, &shape.figure, &moved, place, controls.palette);
         let caption = shape.caption.clone();
         self.shape = Some((subject, shape));
         caption
-    }
-
-    /// Advances the phases by some seconds, and returns the amplitude of each mode as a share of the greatest.
-    fn advance(&mut self, seconds: f32, shape: &BodyShape, energies: &[f32]) -> Vec<f32> {
-        let total = energies.iter().sum::<f32>().sqrt();
-        if total <= 1e-6 {
-            self.greatest = 0.0;
-            self.angles.clear();
-            return vec![0.0; shape.speeds.len()];
-        }
-        self.greatest = self.greatest.max(total);
-        self.angles.resize(shape.speeds.len(), 0.0);
-        let turned = TAU * TURNS * seconds;
-        for (angle, speed) in self.angles.iter_mut().zip(&shape.speeds) {
-            *angle = (*angle + turned * speed) % TAU;
-        }
-        let share = |energy: &f32| energy.max(0.0).sqrt() / self.greatest;
-        // The sine starts at 0: a strike starts from rest.
-        self.angles.iter().zip(energies).map(|(angle, energy)| share(energy) * Vec2::angled(*angle).y).collect()
     }
 
     /// Follows the pointer, which moves the place of the strike.
@@ -124,7 +96,7 @@ impl BodyView {
         let now = ui.input(|input| input.time);
         let pointer = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
         let found = pointer.or(response.hover_pos()).map(|pointer| shape.figure.form.nearest(rect, pointer));
-        let point = found.map(|(point, _)| confined(point, shape));
+        let point = found.map(|(point, _)| shape.confined(point));
         if let Some(point) = point {
             *controls.hint = Hint::new(describe(point, shape), "Click or drag to where it is struck.");
         }
@@ -205,19 +177,6 @@ fn strike(shape: &BodyShape, shown: &Shown, controls: &Controls) -> Option<Point
     }
 }
 
-/// The place that can be struck nearest to a point.
-fn confined(point: Point, shape: &BodyShape) -> Point {
-    let rounded = |share: f64| (share * 1000.0).round() / 1000.0;
-    let point = Point { x: rounded(point.x), y: rounded(point.y) };
-    match (shape.origin.body(), shape.figure.form) {
-        // On a string, the place is counted from the nearer end.
-        (None, _) => Point { x: point.x.min(1.0 - point.x).clamp(0.01, 0.5), y: 0.0 },
-        (Some(body), Form::Line) => Point { y: body.strike.y, ..point },
-        (Some(body), Form::Bell) => Point { x: body.strike.x, ..point },
-        (Some(_), _) => point,
-    }
-}
-
 fn describe(point: Point, shape: &BodyShape) -> String {
     let [x, y] = [point.x, point.y].map(|share| share * 100.0);
     match shape.figure.form {
@@ -230,16 +189,13 @@ fn describe(point: Point, shape: &BodyShape) -> String {
 
 /// Changes the place of the strike in the sound.
 fn write(point: Point, origin: &mut Origin, controls: &mut Controls) {
-    if let Some(body) = origin.body_mut() {
-        body.strike = point;
-    }
     if *origin == Origin::Table {
         if let Some(param) = exciter(controls) {
             controls.turn(param.info(), param.info().normalise(100.0 * point.x as f32));
         }
         return;
     }
-    if let Ok(Some(modes)) = origin.modes() {
+    if let Some(modes) = origin.struck_at(point) {
         replace(modes, controls);
     }
 }

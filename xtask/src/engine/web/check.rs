@@ -143,7 +143,7 @@ fn rendered(preset: &str) -> sprung::Result<String> {
     Ok(Digest::of(&left, &right, f64::from(RATE)).sha256)
 }
 
-/// Plays by mouse, by the computer's keys, by pulling the mass and by MIDI, and renders the take.
+/// Plays by mouse, by the computer's keys, on the body, by pulling the mass and by MIDI, and renders the take.
 fn sounds(page: &mut Page) -> Result<(), String> {
     let mut strikes = 0;
     let mut heard = |page: &mut Page, what: &str| {
@@ -158,6 +158,9 @@ fn sounds(page: &mut Page) -> Result<(), String> {
         page.call("Input.dispatchKeyEvent", json!({ "type": kind, "key": "e", "code": "KeyE" }));
     }
     heard(page, "a key of the computer")?;
+    page.click("#body");
+    heard(page, "a body that is clicked")?;
+    until(page, "sprung.state.take.some((event) => event.strike?.length === 2)")?;
     let at = page.value("(r => [r.x + r.width / 2, r.y + r.height / 2, 0.3 * r.width])(document.querySelector('#plane').getBoundingClientRect())");
     let number = |place: usize| at[place].as_f64().unwrap_or(0.0);
     for (kind, pull) in [("mousePressed", 0.0), ("mouseMoved", 1.0), ("mouseReleased", 1.0)] {
@@ -166,7 +169,7 @@ fn sounds(page: &mut Page) -> Result<(), String> {
         page.call("Input.dispatchMouseEvent", event);
     }
     heard(page, "a mass that is pulled")?;
-    until(page, "sprung.state.take.filter((event) => event.message).length === 6")?;
+    until(page, "sprung.state.take.filter((event) => event.message).length === 8")?;
     midi::plays(page, heard)?;
     page.value(TURN);
     until(page, "sprung.state.take.at(-1)?.macro === 0 && sprung.state.take.at(-1)?.value === 70")?;
@@ -224,13 +227,13 @@ fn is_measured(found: &Value) -> bool {
 fn take_picture(page: &mut Page, path: &Path) -> Result<(), String> {
     page.call(
         "Emulation.setDeviceMetricsOverride",
-        json!({ "width": 1160, "height": 920, "deviceScaleFactor": 1, "mobile": false }),
+        json!({ "width": 1160, "height": 1010, "deviceScaleFactor": 1, "mobile": false }),
     );
     let dark = json!({ "features": [{ "name": "prefers-color-scheme", "value": "dark" }] });
     page.call("Emulation.setEmulatedMedia", dark);
     page.click("[data-key='48']");
     page.value("[48, 55, 60].forEach((key) => sprung.play(key, true))");
-    page.value("scrollTo(0, 0)");
+    page.value("scrollTo(0, 0); document.documentElement.style.overflow = 'hidden'");
     page.value("new Promise((done) => setTimeout(done, 2500))");
     let answer = page.call("Page.captureScreenshot", json!({ "format": "png", "optimizeForSpeed": false }));
     let bytes = answer["data"].as_str().and_then(decoded).ok_or("the browser’s picture is not base64")?;

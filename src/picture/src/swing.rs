@@ -1,0 +1,46 @@
+//! The slow motion in which a body is seen to swing.
+
+use crate::shape::BodyShape;
+use emath::{Rect, Vec2};
+use std::f32::consts::TAU;
+
+/// Turns of the lowest mode in a second: the true motion is too fast to be seen.
+const TURNS: f32 = 0.8;
+
+/// The slow motion of a body's modes.
+#[derive(Debug, Default)]
+pub struct Swing {
+    /// Phase of each mode, in radians.
+    angles: Vec<f32>,
+    /// The greatest amplitude since the body was at rest.
+    greatest: f32,
+}
+
+impl Swing {
+    /// Goes on by some seconds. Returns the displacement of each point in a picture of this size, for the energies of the modes:
+    /// each moves as far as it does in truth, as a share of the greatest since the body was at rest.
+    pub fn advance(&mut self, seconds: f32, shape: &BodyShape, energies: &[f32], rect: Rect) -> Vec<f32> {
+        let amplitudes = self.amplitudes(seconds, shape, energies);
+        let reach = shape.figure.form.reach(rect);
+        let soft = |value: f32| reach * value / (1.0 + value * value).sqrt();
+        shape.displacements(&amplitudes).into_iter().map(soft).collect()
+    }
+
+    fn amplitudes(&mut self, seconds: f32, shape: &BodyShape, energies: &[f32]) -> Vec<f32> {
+        let total = energies.iter().sum::<f32>().sqrt();
+        if total <= 1e-6 {
+            self.greatest = 0.0;
+            self.angles.clear();
+            return vec![0.0; shape.speeds.len()];
+        }
+        self.greatest = self.greatest.max(total);
+        self.angles.resize(shape.speeds.len(), 0.0);
+        let turned = TAU * TURNS * seconds;
+        for (angle, speed) in self.angles.iter_mut().zip(&shape.speeds) {
+            *angle = (*angle + turned * speed) % TAU;
+        }
+        let share = |energy: &f32| energy.max(0.0).sqrt() / self.greatest;
+        // The sine starts at 0: a strike starts from rest.
+        self.angles.iter().zip(energies).map(|(angle, energy)| share(energy) * Vec2::angled(*angle).y).collect()
+    }
+}

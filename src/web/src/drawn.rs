@@ -1,0 +1,75 @@
+//! The body of a preset as numbers that the page draws on a canvas.
+
+use ecolor::Color32;
+use emath::{Pos2, Rect, pos2, vec2};
+use sprung::preset::Preset;
+use sprung::sound::bodies::Point;
+use sprung_picture::{BodyShape, Picture, Swing};
+
+/// Number of modes that are shown.
+pub(crate) const SHOWN: usize = 64;
+
+/// How far from the body a click still touches it, in pixels.
+const REACH: f32 = 26.0;
+
+/// A body that swings.
+pub(crate) struct Drawn {
+    shape: BodyShape,
+    swing: Swing,
+    /// The energies of the modes, which the page writes.
+    pub(crate) energies: [f32; SHOWN],
+    pub(crate) numbers: Vec<f32>,
+}
+
+impl Drawn {
+    /// The body of a preset at rest. Slow: it computes the shapes of all modes.
+    pub(crate) fn new(preset: &Preset) -> Self {
+        let shape = BodyShape::of(&preset.patch.modes, preset.guide.family);
+        Self { shape, swing: Swing::default(), energies: [0.0; SHOWN], numbers: Vec::new() }
+    }
+
+    /// Draws the body some seconds later, in a picture of this size, with a colour (0xRRGGBB) for what moves. The numbers are: how many
+    /// polygons, and for each four corners and its colour; how many lines, and for each how many points, and these; and the place of
+    /// the strike, if it is known. Returns how many numbers they are.
+    pub(crate) fn draw(&mut self, size: [f32; 2], seconds: f32, glow: u32) -> usize {
+        let rect = rect(size);
+        let moved = self.swing.advance(seconds, &self.shape, &self.energies, rect);
+        let [_, red, green, blue] = glow.to_be_bytes();
+        let strike = self.shape.origin.body().map(|body| body.strike);
+        let glow = Color32::from_rgb(red, green, blue);
+        let picture = Picture::of(rect, &self.shape.figure, &moved, strike, glow);
+        let numbers = &mut self.numbers;
+        numbers.clear();
+        // Two triangles are a patch with four corners.
+        numbers.push((picture.triangles.len() / 2) as f32);
+        for pair in picture.triangles.chunks_exact(2) {
+            let corners =
+                [pair[0][0], pair[0][1], pair[0][2], pair[1][2]].map(|corner| picture.vertices[corner as usize]);
+            corners.iter().for_each(|(at, _)| numbers.extend([at.x, at.y]));
+            let mean = |part: usize| corners.iter().map(|(_, colour)| f32::from(colour[part])).sum::<f32>() / 4.0;
+            numbers.extend([mean(0), mean(1), mean(2)]);
+        }
+        let lines = picture.edges.iter().chain(Some(&picture.string).filter(|string| !string.is_empty()));
+        numbers.push(lines.clone().count() as f32);
+        for line in lines {
+            numbers.push(line.len() as f32);
+            line.iter().for_each(|at| numbers.extend([at.x, at.y]));
+        }
+        picture.strike.iter().for_each(|at| numbers.extend([at.x, at.y]));
+        numbers.len()
+    }
+
+    /// Writes the coordinates of the point of the body that is nearest to a place in the picture. Returns whether the body is touched
+    /// there, and can be struck elsewhere.
+    pub(crate) fn touch(&mut self, size: [f32; 2], at: [f32; 2]) -> bool {
+        let (point, distance) = self.shape.figure.form.nearest(rect(size), pos2(at[0], at[1]));
+        let Point { x, y } = self.shape.confined(point);
+        self.numbers.clear();
+        self.numbers.extend([x as f32, y as f32]);
+        distance <= REACH && self.shape.origin.body().is_some()
+    }
+}
+
+fn rect([width, height]: [f32; 2]) -> Rect {
+    Rect::from_min_size(Pos2::ZERO, vec2(width, height))
+}
