@@ -8,9 +8,10 @@ use std::path::Path;
 ///
 /// # Errors
 /// If it is no whole path to a file with the extension `toml`, or as [`Playable::read`].
-pub(crate) fn read(path: &str) -> sprung::Result<Playable> {
+pub(crate) fn read(path: impl AsRef<Path>) -> sprung::Result<Playable> {
     let mut open = |path: &Path| open(path, &path.display().to_string(), "a preset, kit, scale or mapping");
-    check(path).and_then(|path| Playable::read(path, &mut open))
+    check(path.as_ref())?;
+    Playable::read(path.as_ref(), &mut open)
 }
 
 /// Opens a file, and nothing else: opening a pipe would block the window.
@@ -31,10 +32,9 @@ pub(crate) fn number(error: &sprung::Error) -> i32 {
 }
 
 /// Only full paths are accepted, since users do not know a host's working folder.
-fn check(path: &str) -> sprung::Result<&Path> {
-    let path = Path::new(path);
-    if path.is_absolute() && path.extension().is_some_and(|extension| extension == "toml") {
-        return Ok(path);
+fn check(path: &Path) -> sprung::Result<()> {
+    if path.is_absolute() && path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+        return Ok(());
     }
     let example = if cfg!(windows) { "C:\\Sounds\\bell.toml" } else { "/home/me/bell.toml" };
     Err(sprung::Error::value(path.display().to_string(), format!("expected a whole path, such as {example}")))
@@ -59,6 +59,6 @@ mod tests {
         let path = std::fs::canonicalize(path).unwrap().display().to_string();
         assert!(matches!(read(&path), Ok(Playable::Kit(_))));
         // ENOENT and ERROR_FILE_NOT_FOUND are both 2.
-        assert_eq!(number(&read(&path.replace(".toml", "-2.toml")).unwrap_err()), 2);
+        assert_eq!(number(&read(path.replace(".toml", "-2.toml")).unwrap_err()), 2);
     }
 }

@@ -60,6 +60,8 @@ pub(super) struct Interaction {
     pub(super) binding: Option<Binding>,
     /// The parameter that the user has moved last, until somebody has looked.
     pub(super) touched: Option<usize>,
+    /// A message about what the user has done in this pass.
+    pub(super) said: Option<String>,
     /// The knob under a source that is being dragged, in this pass.
     pub(super) aim: Option<&'static ParamInfo>,
     /// The place over which it is held, to show what is behind it, and since when.

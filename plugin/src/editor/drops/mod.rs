@@ -45,7 +45,7 @@ fn is_own(path: &Path, library: &Library) -> bool {
 
 /// Loads a preset or kit. One from elsewhere is copied to the user's folder, if there is one.
 fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
-    let read = files::read(&path.display().to_string());
+    let read = files::read(path);
     let imported = read.and_then(|sound| match library.filter(|library| !is_own(path, library)) {
         Some(library) => {
             let (sound, place) = library.import(sound)?;

@@ -96,10 +96,12 @@ impl Detail {
             *controls.hint = Hint::new("Load alone", "To change the sound itself: save it, and put it on a pad.");
         }
         if response.clicked()
-            && let Playable::Kit(mut heard) = controls.params.state().into_sound()
+            && let Playable::Kit(heard) = controls.params.state().into_sound()
         {
-            let (_, preset) = heard.sounds.swap_remove(now.sound);
-            controls.history.load(Playable::Preset(preset), controls.params, controls.host);
+            // Another kit may have been loaded in this moment.
+            if let Some((_, preset)) = heard.sounds.into_iter().nth(now.sound) {
+                controls.history.load(Playable::Preset(preset), controls.params, controls.host);
+            }
             return None;
         }
         let look = if kit.pads.len() > 1 { Look::Plain } else { Look::Disabled };
@@ -143,7 +145,7 @@ impl Detail {
             range: PITCHES,
             speed: 0.1,
             is_whole: false,
-            written: &|pitch| match pitch.fract() == 0.0 {
+            written: &|pitch| match pitch.fract() == 0.0 && (0.0..128.0).contains(&pitch) {
                 true => note_name(pitch as u8),
                 false => format!("{pitch:.2}"),
             },

@@ -29,6 +29,10 @@ pub(super) fn edited(controls: &Controls, edit: impl FnOnce(&mut KitPreset)) -> 
     edit(&mut after);
     number_by_use(&mut after);
     let is_single = after.sounds.len() == 1;
+    if was_single && is_single && before.sounds != after.sounds {
+        // Another sound has its own effects.
+        after.params = kit.params.clone();
+    }
     Some(match (was_single, is_single) {
         (false, false) => State { playable: Playable::Kit(after), ..state },
         (true, true) if before.sounds == after.sounds => State { playable: Playable::Kit(after), ..state },

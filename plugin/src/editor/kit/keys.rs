@@ -35,7 +35,8 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, grid: &mut KeyGrid, shown: &Shown, d
 pub(super) fn about(key: u8, shown: &Shown, group: f32) -> String {
     let kit = &shown.loaded().kit;
     let Some(pad) = kit.pad(key) else { return "silent".to_owned() };
-    let pitch = pad.pitch.map_or(String::new(), |pitch| format!("   at {}", note_name(pitch.round() as u8)));
+    let pitch =
+        pad.pitch.map_or(String::new(), |pitch| format!("   at {}", note_name(pitch.round().clamp(0.0, 127.0) as u8)));
     let gain = if pad.gain_db == 0.0 { String::new() } else { format!("   {:+.1} dB", pad.gain_db) };
     let group = match kit.choke(pad, group) {
         0 => String::new(),

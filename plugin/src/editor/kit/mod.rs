@@ -14,7 +14,7 @@ use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::keyboard::grid::KeyGrid;
 use crate::editor::pages::Request;
 use crate::editor::theme::{GAP, PADDING, TEXT};
-use crate::editor::widgets::buttons::{Look, button, tab};
+use crate::editor::widgets::buttons::{Look, button, help_tab, tab};
 use crate::editor::widgets::text::line;
 use crate::link::Link;
 use crate::loaded::Loaded;
@@ -160,7 +160,7 @@ impl KitPage {
                 self.shows_keys = is_keys;
             }
         }
-        show_help(ui, help, controls)
+        help_tab(ui, help, "kits", controls).then_some(Request::Manual)
     }
 
     fn carry_out(&mut self, ui: &Ui, deed: Deed, shown: &Shown, controls: &mut Controls) {
@@ -222,15 +222,6 @@ impl KitPage {
         let text = format!("All keys play {}: those that suit it are bright.", controls.params.name());
         line(ui.painter(), says, Align2::LEFT_CENTER, &text, TEXT, palette.muted);
         keys::show(ui, below, &mut self.keys, shown, down, controls);
-        show_help(ui, help, controls)
+        help_tab(ui, help, "kits", controls).then_some(Request::Manual)
     }
-}
-
-/// The button of the manual.
-fn show_help(ui: &Ui, rect: Rect, controls: &mut Controls) -> Option<Request> {
-    let response = tab(ui, rect, "?", false, controls.palette);
-    if response.hovered() {
-        *controls.hint = Hint::new("Manual", "What this page does: kits");
-    }
-    response.clicked().then_some(Request::Manual)
 }

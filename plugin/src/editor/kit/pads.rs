@@ -99,7 +99,6 @@ impl Pads {
         let choke = |key: u8| kit.pad(key).map_or(0, |pad| kit.choke(pad, group));
         let (pointer, is_released) = ui.input(|input| (input.pointer.latest_pos(), input.pointer.any_released()));
         let carried = DragAndDrop::payload::<Carried>(ui.ctx());
-        let focused = ui.memory(|memory| memory.focused());
         let empties = ui.input(|input| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace));
         let size = rect.size() / f32::from(ROW);
         let (mut touched, mut deed, chosen) = (None, None, self.chosen);
@@ -128,9 +127,7 @@ impl Pads {
             if response.clicked() || response.drag_stopped() && is_under {
                 self.chosen = key;
             }
-            let has_key = focused == Some(response.id)
-                || focused.is_none() && is_chosen && pointer.is_some_and(|at| rect.contains(at));
-            if empties && has_key && pad.is_some() {
+            if empties && response.has_focus() && pad.is_some() {
                 deed = Some(Deed::Empty(key));
             }
             if let Some(carried) = carried.as_ref().filter(|_| is_under && is_released) {

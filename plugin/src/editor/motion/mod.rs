@@ -3,15 +3,18 @@
 mod curve;
 pub(super) mod sources;
 
+use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
-use crate::editor::controls::{Controls, Hint};
 use crate::editor::pages::Request;
 use crate::editor::pages::sections::{Section, knobs, sections};
 use crate::editor::routes::list;
 use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, SMALL, TITLE_HEIGHT};
-use crate::editor::widgets::buttons::tab;
+use crate::editor::widgets::buttons::help_tab;
 use crate::editor::widgets::text::line;
+use curve::Curve;
 use egui::{Align2, Rect, Ui, pos2, vec2};
+use sources::section_of;
+use sprung::patch::routes::Source;
 
 /// Share of the width that the sources have, and its least and greatest.
 const SIDE: (f32, [f32; 2]) = (0.23, [140.0, 252.0]);
@@ -20,17 +23,23 @@ const TALL: f32 = 420.0;
 
 /// The state of the face.
 pub(super) struct MotionPage {
-    /// The section that is shown below the routes.
-    chosen: &'static str,
+    /// The source whose section is shown below the routes.
+    chosen: Source,
+    curve: Curve,
 }
 
 impl Default for MotionPage {
     fn default() -> Self {
-        Self { chosen: "LFO 1" }
+        Self { chosen: Source::Lfo1, curve: Curve::default() }
     }
 }
 
 impl MotionPage {
+    /// Ends what the user is doing with the curve.
+    pub(super) fn leave(&mut self) {
+        self.curve.leave();
+    }
+
     /// Shows the face.
     pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, shown: &Shown, controls: &mut Controls) -> Option<Request> {
         let palette = controls.palette;
@@ -42,34 +51,41 @@ impl MotionPage {
         let list = rest.with_max_y(foot.top() - GAP);
         palette.paint_panel(ui.painter(), side);
         palette.paint_panel(ui.painter(), foot);
-        if let Some(section) = sources::show(ui, side.shrink(PADDING), self.chosen, shown, controls) {
-            self.chosen = section;
+        if let Some(source) = sources::show(ui, side.shrink(PADDING), self.chosen, shown, controls) {
+            self.chosen = source;
+            self.leave();
         }
         list::show(ui, list, shown.patch(), shown.guide(), shown.preset().is_some(), controls);
         let help = Rect::from_min_size(list.right_top() - vec2(22.0, 0.0), vec2(22.0, TITLE_HEIGHT));
-        let response = tab(ui, help, "?", false, palette);
-        if response.hovered() {
-            *controls.hint = Hint::new("Manual", "What this page does: modulation");
+        let asks = help_tab(ui, help, "modulation", controls);
+        for section in sections(section_of(self.chosen).as_slice()) {
+            self.show_section(ui, foot.shrink2(vec2(PADDING, 0.0)), section, rows, shown, controls);
         }
-        for section in sections(&[self.chosen]) {
-            show_section(ui, foot.shrink2(vec2(PADDING, 0.0)), section, rows, shown, controls);
-        }
-        response.clicked().then_some(Request::Manual)
+        asks.then_some(Request::Manual)
     }
-}
 
-/// Shows the knobs of a section, and beside them its curve.
-fn show_section(ui: &mut Ui, rect: Rect, section: Section, rows: usize, shown: &Shown, controls: &mut Controls) {
-    let title = Rect::from_min_size(rect.min + vec2(0.0, 2.0), vec2(rect.width(), TITLE_HEIGHT - 2.0));
-    let name = section[0].section.to_uppercase();
-    line(ui.painter(), title, Align2::LEFT_CENTER, &name, SMALL, controls.palette.muted);
-    let columns = section.len().div_ceil(rows);
-    let [least, most] = CELL_WIDTH;
-    let width = (0.5 * rect.width() / columns as f32).floor().clamp(least, most);
-    let left = rect.right() - columns as f32 * width;
-    let first = Rect::from_min_size(pos2(left, rect.top() + TITLE_HEIGHT), vec2(width, CELL_HEIGHT));
-    let about = (shown.patch(), shown.guide());
-    knobs(ui, first, columns, section, about, controls);
-    let picture = Rect::from_min_max(pos2(rect.left(), first.top()), pos2(left - 2.0 * GAP, rect.bottom() - 2.0 * GAP));
-    curve::show(ui, picture.shrink2(vec2(8.0, 6.0)), section, controls);
+    /// Shows the knobs of a section, and beside them its curve.
+    fn show_section(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        section: Section,
+        rows: usize,
+        shown: &Shown,
+        controls: &mut Controls,
+    ) {
+        let title = Rect::from_min_size(rect.min + vec2(0.0, 2.0), vec2(rect.width(), TITLE_HEIGHT - 2.0));
+        let name = section[0].section.to_uppercase();
+        line(ui.painter(), title, Align2::LEFT_CENTER, &name, SMALL, controls.palette.muted);
+        let columns = section.len().div_ceil(rows);
+        let [least, most] = CELL_WIDTH;
+        let width = (0.5 * rect.width() / columns as f32).floor().clamp(least, most);
+        let left = rect.right() - columns as f32 * width;
+        let first = Rect::from_min_size(pos2(left, rect.top() + TITLE_HEIGHT), vec2(width, CELL_HEIGHT));
+        let about = (shown.patch(), shown.guide());
+        knobs(ui, first, columns, section, about, controls);
+        let picture =
+            Rect::from_min_max(pos2(rect.left(), first.top()), pos2(left - 2.0 * GAP, rect.bottom() - 2.0 * GAP));
+        self.curve.show(ui, picture.shrink2(vec2(8.0, 6.0)), section, controls);
+    }
 }

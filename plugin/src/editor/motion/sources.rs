@@ -4,13 +4,13 @@ use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::pages::curves;
 use crate::editor::pages::sections::sections;
-use crate::editor::routes::source_name;
+use crate::editor::routes::{OF_KITS, source_name};
 use crate::editor::theme::{RADIUS, SMALL, TEXT};
 use crate::editor::widgets::text::{line, width};
 use egui::{
     Align2, CursorIcon, Id, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
-use sprung::patch::routes::Source;
+use sprung::patch::routes::{Route, Source};
 
 /// The sources that have a curve, with their sections.
 const DRAWN: [(Source, &str); 5] = [
@@ -27,6 +27,8 @@ const SPACE: f32 = 4.0;
 /// Height of a title, and the space around the text of a source.
 const TITLE: f32 = 18.0;
 const AROUND: f32 = 14.0;
+/// Width of the mark of a source that has routes.
+const DOT: f32 = 9.0;
 
 /// The section whose knobs a source has.
 pub(in crate::editor) fn section_of(source: Source) -> Option<&'static str> {
@@ -34,14 +36,14 @@ pub(in crate::editor) fn section_of(source: Source) -> Option<&'static str> {
     drawn.or(source.id().starts_with("macro").then_some("Macros"))
 }
 
-/// Shows the sources. Returns the section of one that was clicked.
-pub(super) fn show(
-    ui: &mut Ui,
-    rect: Rect,
-    chosen: &str,
-    shown: &Shown,
-    controls: &mut Controls,
-) -> Option<&'static str> {
+/// How many routes a source has.
+fn routes_of(source: Source, shown: &Shown) -> usize {
+    let is_of = |(_, route): &(usize, Route)| route.source == source || route.scale == Some(source);
+    shown.patch().routes.iter().filter(is_of).count()
+}
+
+/// Shows the sources. Returns the one with knobs that was clicked.
+pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, controls: &mut Controls) -> Option<Source> {
     let mut clicked = None;
     let mut inner = ui.new_child(UiBuilder::new().id_salt("sources").max_rect(rect));
     ScrollArea::vertical().id_salt("sources").auto_shrink(false).show(&mut inner, |ui| {
@@ -58,17 +60,14 @@ pub(super) fn show(
             places.push((*source, name, Rect::from_min_size(pos2(0.0, top), vec2(whole, TILE))));
             top += TILE + SPACE;
         }
-        let titles = [("Drag one to a knob, on any page", 0.0), ("Played", top), ("Macros", 0.0)];
-        let mut titles = titles.to_vec();
-        top += TITLE;
-        for (number, group) in [played.collect::<Vec<_>>(), macros.collect()].into_iter().enumerate() {
-            if number == 1 {
-                titles[2].1 = top;
-                top += TITLE;
-            }
+        let mut titles = vec![("Drag one to a knob, on any page", 0.0)];
+        for (title, group) in [("Played", played.collect::<Vec<_>>()), ("Macros", macros.collect())] {
+            titles.push((title, top));
+            top += TITLE;
             let mut left = 0.0;
             for (source, name) in group {
-                let size = vec2((width(ui.painter(), name, TEXT) + AROUND).min(whole), CHIP);
+                let dot = if routes_of(*source, shown) > 0 { DOT } else { 0.0 };
+                let size = vec2((width(ui.painter(), name, TEXT) + AROUND + dot).min(whole), CHIP);
                 if left > 0.0 && left + size.x > whole {
                     (left, top) = (0.0, top + CHIP + SPACE);
                 }
@@ -85,7 +84,7 @@ pub(super) fn show(
         }
         for (source, name, place) in places {
             if show_source(ui, place.translate(offset), (source, name), chosen, shown, controls) {
-                clicked = section_of(source).or(clicked);
+                clicked = section_of(source).map(|_| source).or(clicked);
             }
         }
     });
@@ -97,39 +96,41 @@ fn show_source(
     ui: &Ui,
     rect: Rect,
     (source, name): (Source, &str),
-    chosen: &str,
+    chosen: Source,
     shown: &Shown,
     controls: &mut Controls,
 ) -> bool {
     let palette = controls.palette;
     let response = ui.interact(rect, Id::unique(("source", source.id())), Sense::click_and_drag());
-    let section = section_of(source);
-    let is_chosen = section == Some(chosen);
-    let used = shown.patch().routes.iter().filter(|(_, route)| route.source == source || route.scale == Some(source));
-    let used = used.count();
+    let (is_chosen, used, is_preset) = (source == chosen, routes_of(source, shown), shown.preset().is_some());
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, format!("Source {name}")));
-    if shown.preset().is_some() {
+    if is_preset {
         response.dnd_set_drag_payload(source);
     }
     if response.hovered() {
-        ui.ctx().set_cursor_icon(CursorIcon::Grab);
         let routes = match used {
-            0 => "moves nothing yet".to_owned(),
-            1 => "has one route".to_owned(),
-            count => format!("has {count} routes"),
+            0 => "It moves nothing yet.".to_owned(),
+            1 => "It has one route.".to_owned(),
+            count => format!("It has {count} routes."),
         };
-        *controls.hint =
-            Hint::new(name, format!("It {routes}. Drag it to a knob; held over a tab, it opens that page."));
+        let drags = if is_preset { "Drag it to a knob; held over a tab, it opens that page." } else { OF_KITS };
+        *controls.hint = Hint::new(name, format!("{routes} {drags}"));
+        if is_preset {
+            ui.ctx().set_cursor_icon(CursorIcon::Grab);
+        }
     }
-    let edge = match (response.has_focus(), is_chosen, used > 0) {
-        (true, ..) => Stroke::new(1.5, palette.text),
-        (_, true, _) => Stroke::new(1.5, palette.accent),
-        (.., true) => Stroke::new(1.0, palette.modulation),
+    let edge = match (response.has_focus(), is_chosen) {
+        (true, _) => Stroke::new(1.5, palette.text),
+        (_, true) => Stroke::new(1.5, palette.accent),
         _ => Stroke::new(1.0, palette.line),
     };
     let fill = if response.hovered() { palette.raised } else { palette.panel };
     ui.painter().rect(rect, RADIUS, fill, edge, StrokeKind::Inside);
-    let inside = rect.shrink2(vec2(6.0, 2.0));
+    let mut inside = rect.shrink2(vec2(6.0, 2.0));
+    if used > 0 {
+        ui.painter().circle_filled(inside.left_center() + vec2(2.5, 0.0), 2.5, palette.modulation);
+        inside.min.x += DOT;
+    }
     let colour = if used > 0 || is_chosen { palette.text } else { palette.muted };
     let named = line(ui.painter(), inside, Align2::LEFT_CENTER, name, TEXT, colour);
     if let Some((_, section)) = DRAWN.iter().find(|(own, _)| *own == source) {

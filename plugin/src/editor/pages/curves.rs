@@ -2,6 +2,7 @@
 
 use super::outlines;
 use crate::editor::controls::Controls;
+use crate::editor::theme::Palette;
 use egui::{Painter, Pos2, Rect, Stroke, Vec2, pos2};
 use sprung::params::{Choice as _, MalletPulse, NoiseDecay, Shape};
 use sprung::params::{PARAMS, Param, ParamInfo};
@@ -34,7 +35,8 @@ pub(in crate::editor) fn paint(painter: &Painter, rect: Rect, section: &[ParamIn
     let is_off = |level: Param| value(level) <= level.info().min;
     let (points, ground, is_quiet) = match first {
         Param::Envelope1Delay | Param::Envelope2Delay => {
-            (envelope(rect, &|place| f64::from(controls.value(row(place)))), floor, false)
+            let value = |place: usize| f64::from(controls.value(row(place)));
+            return paint_envelope(painter, rect, &value, whole(lengths(&value)), palette);
         }
         Param::MalletLevel => {
             let is_impulse = MalletPulse::from_value(value(Param::MalletPulse)) == MalletPulse::Impulse;
@@ -65,17 +67,33 @@ pub(in crate::editor) fn paint(painter: &Painter, rect: Rect, section: &[ParamIn
     painter.add(egui::Shape::line(points, Stroke::new(1.5, colour)));
 }
 
+/// Draws an envelope from the values of its rows: delay, attack, hold, decay, sustain, release, curve. The width of a stage is
+/// proportional to the square root of its time, as a share of `whole`, so that short stages stay visible beside long ones.
+pub(in crate::editor) fn paint_envelope(
+    painter: &Painter,
+    rect: Rect,
+    value: &dyn Fn(usize) -> f64,
+    whole: f64,
+    palette: &Palette,
+) {
+    painter.hline(rect.x_range(), painter.round_to_pixel_center(rect.bottom()), Stroke::new(1.0, palette.line));
+    let line = egui::Shape::line(envelope(rect, value, whole), Stroke::new(1.5, palette.accent));
+    painter.with_clip_rect(rect.expand(2.0).intersect(painter.clip_rect())).add(line);
+}
+
 /// The lengths of an envelope's delay, attack, hold, decay and release in its picture, from the values of its rows.
 pub(in crate::editor) fn lengths(value: &dyn Fn(usize) -> f64) -> [f64; 5] {
     [0, 1, 2, 3, 5].map(|row| value(row).max(0.0).sqrt())
 }
 
-/// An envelope from the values of its rows: delay, attack, hold, decay, sustain, release, curve. The width of a stage
-/// is proportional to the square root of its time, so that short stages stay visible beside long ones.
-fn envelope(rect: Rect, value: &dyn Fn(usize) -> f64) -> Vec<Pos2> {
+/// What the whole width of an envelope's picture is worth in the unit of these lengths.
+pub(in crate::editor) fn whole(lengths: [f64; 5]) -> f64 {
+    lengths.iter().sum::<f64>() / (1.0 - SUSTAIN)
+}
+
+fn envelope(rect: Rect, value: &dyn Fn(usize) -> f64, total: f64) -> Vec<Pos2> {
     let [delay, attack, hold, decay, release] = lengths(value);
     let (sustain, bend) = (value(4) / 100.0, ratio_from_semitones(12.0 * -0.04 * value(6)));
-    let total = (delay + attack + hold + decay + release).max(1e-6) / (1.0 - SUSTAIN);
     let stages = [
         (delay, 0.0, 0.0),
         (attack, 0.0, 1.0),
@@ -111,7 +129,8 @@ mod tests {
     fn an_envelope_rises_falls_and_ends_at_the_right() {
         let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(100.0, 50.0));
         let rows = [0.1, 0.2, 0.0, 0.5, 40.0, 1.0, 30.0];
-        let points = envelope(rect, &|row| rows[row]);
+        let value = |row: usize| rows[row];
+        let points = envelope(rect, &value, whole(lengths(&value)));
         assert!(
             points.windows(2).all(|pair| pair[0].x <= pair[1].x)
                 && points.iter().all(|point| rect.expand(0.01).contains(*point))

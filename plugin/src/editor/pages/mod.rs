@@ -14,7 +14,7 @@ use crate::editor::controls::shown::Shown;
 use crate::editor::lamps;
 use crate::editor::theme::GAP;
 use crate::editor::theme::layout::Layout;
-use crate::editor::widgets::buttons::tab;
+use crate::editor::widgets::buttons::help_tab;
 use crate::link::Link;
 use egui::{Rect, Ui, pos2, vec2};
 use nice_plug_core::context::PluginApi;
@@ -126,12 +126,7 @@ impl Pages {
             (self.part, self.is_new) = (part, true);
         }
         let help = Rect::from_min_size(pos2(way.right(), rect.top()), vec2(HELP, HELP));
-        let response = tab(ui, help, "?", false, controls.palette);
-        if response.hovered() {
-            *controls.hint =
-                crate::editor::controls::Hint::new("Manual", format!("What this page does: {}", self.topic()));
-        }
-        response.clicked().then_some(Request::Manual)
+        help_tab(ui, help, self.topic(), controls).then_some(Request::Manual)
     }
 }
 

@@ -124,7 +124,7 @@ fn show_part(
     }
     let colour = if is_on || is_selected || is_hovered { palette.text } else { palette.muted };
     text::line(ui.painter(), text, Align2::LEFT_CENTER, name, size, colour);
-    response.clicked() || carry::dwells(ui, rect, controls)
+    response.clicked() || !is_selected && carry::dwells(ui, rect, controls)
 }
 
 #[cfg(test)]

@@ -48,6 +48,9 @@ pub(in crate::editor) fn follow(ui: &Ui, guide: &Guide, controls: &mut Controls)
     if ui.input(|input| input.pointer.any_released()) {
         return aim.map(|info| add(*source, info, AMOUNT, controls));
     }
+    let pointer = ui.input(|input| input.pointer.latest_pos());
+    controls.interaction.dwell =
+        controls.interaction.dwell.filter(|(place, _)| pointer.is_some_and(|at| place.contains(at)));
     carried::paint(ui, &source_name(*source, guide), controls.palette.modulation, controls.palette);
     // A tab is opened by holding it there, without a movement.
     ui.ctx().request_repaint();

@@ -18,7 +18,7 @@ use sprung::preset::{Guide, Playable};
 const AMOUNT: f32 = 25.0;
 
 /// Why a route cannot be added.
-const OF_KITS: &str = "a kit’s sounds have routes of their own";
+pub(super) const OF_KITS: &str = "a kit’s sounds have routes of their own";
 const ALL_TAKEN: &str = "all sixteen routes are taken";
 
 /// The name of a source as shown to the user; for a macro, the preset's name for it.
@@ -128,13 +128,14 @@ pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
             return;
         }
         if let Some(source) = sources(ui, &preset.guide) {
-            add(source, info, AMOUNT, controls);
+            controls.interaction.said = Some(add(source, info, AMOUNT, controls));
             ui.close();
         }
     });
 }
 
 /// Adds a route from a source to a parameter, unless there is one. Returns a message.
+#[must_use]
 fn add(source: Source, info: &'static ParamInfo, amount: f32, controls: &mut Controls) -> String {
     let Playable::Preset(preset) = controls.params.state().playable else { return OF_KITS.to_owned() };
     let routes = &preset.patch.routes;

@@ -201,10 +201,12 @@ fn the_values_of_one_sound_go_with_it_and_end_with_it() {
     stage.drag(snare, vec2(0.0, 0.0), Modifiers::NONE);
     stage.button("Empty this pad");
     assert_eq!(stage.params.state().values, turned);
-    let (marimba, aim) = (stage.sound("Marimba"), stage.place("C2"));
-    stage.drag(marimba, aim - marimba, Modifiers::NONE);
-    let Ok(Playable::Preset(expected)) = Playable::find("Marimba") else { panic!("a preset") };
-    assert_eq!((stage.kit().sounds.len(), stage.params.state().values), (1, expected.patch.values));
+    for name in ["Taiko", "Marimba"] {
+        let (sound, aim) = (stage.sound(name), stage.place("C2"));
+        stage.drag(sound, aim - sound, Modifiers::NONE);
+        let Ok(Playable::Preset(expected)) = Playable::find(name) else { panic!("a preset") };
+        assert_eq!((stage.kit().sounds.len(), stage.params.state().values), (1, expected.patch.values), "{name}");
+    }
 }
 
 #[test]
@@ -226,8 +228,9 @@ fn what_is_typed_for_a_pad_stays_with_it() {
     stage.harness.key_press(Key::Escape);
     stage.harness.run_steps(2);
     assert_eq!(stage.pad(38).unwrap().1.name, "Snare", "Escape keeps the name");
-    // The chosen pad is emptied by a key while the pointer is over the pads.
-    stage.harness.event(Event::PointerMoved(snare));
+    // A key empties the pad that has the focus.
+    stage.harness.get_by_label("Pad D2 Snare").focus();
+    stage.harness.run_steps(2);
     stage.harness.key_press(Key::Delete);
     stage.harness.run_steps(2);
     assert_eq!((stage.pad(38), stage.pad(36).is_some()), (None, true));

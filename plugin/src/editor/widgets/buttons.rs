@@ -1,6 +1,7 @@
 //! Buttons and tabs in the window's own style.
 
 use super::text::line;
+use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{Palette, SMALL, TEXT};
 use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
 
@@ -37,6 +38,15 @@ pub(crate) fn button(ui: &Ui, rect: Rect, text: &str, name: &str, look: Look, pa
     }
     line(ui.painter(), rect.shrink2(egui::vec2(3.0, 0.0)), Align2::CENTER_CENTER, text, TEXT, colour);
     response
+}
+
+/// The tab that opens the manual at a topic. Returns whether it was clicked.
+pub(crate) fn help_tab(ui: &Ui, rect: Rect, topic: &str, controls: &mut Controls) -> bool {
+    let response = tab(ui, rect, "?", false, controls.palette);
+    if response.hovered() {
+        *controls.hint = Hint::new("Manual", format!("What this page does: {topic}"));
+    }
+    response.clicked()
 }
 
 /// A tab: a word, underlined if its page is shown.

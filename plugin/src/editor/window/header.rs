@@ -17,7 +17,7 @@ pub(in crate::editor) enum Face {
     /// The body, to play.
     #[default]
     Play,
-    /// All of the sound: modes, pictures, every parameter.
+    /// What the sound is made of: modes, pictures, parameters.
     Sound,
     /// What moves: sources, routes, curves.
     Motion,
@@ -28,7 +28,7 @@ pub(in crate::editor) enum Face {
 /// The faces with their names and what they are for.
 const FACES: [(Face, &str, &str); 4] = [
     (Face::Play, "Play", "The body, what moves it, and the few knobs that matter."),
-    (Face::Sound, "Sound", "All of the sound: its modes, moving pictures, every parameter, and tuning."),
+    (Face::Sound, "Sound", "What the sound is made of: its modes, moving pictures, its parameters, and tuning."),
     (Face::Motion, "Motion", "What moves what: sources to be dragged to knobs, routes, envelopes and oscillators."),
     (Face::Kit, "Kit", "Sounds on pads: drag them there, and set pitch, level, place, choke group and output."),
 ];
@@ -72,7 +72,7 @@ pub(super) struct Header<'a> {
 pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Controls) -> Option<Request> {
     let palette = controls.palette;
     let mut request = None;
-    let is_narrow = rect.width() < 900.0;
+    let is_narrow = rect.width() < 940.0;
     let mut left = rect.left() + 2.0;
     let mut next = |width: f32| {
         let place = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()));

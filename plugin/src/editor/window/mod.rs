@@ -215,6 +215,9 @@ impl Window {
         if self.over.is_some() || self.face != Face::Kit {
             self.kit.leave(&mut controls);
         }
+        if self.over.is_some() || self.face != Face::Motion {
+            self.motion.leave();
+        }
         match self.over {
             Some(Over::Browser) => {
                 if let Some((message, is_done)) = self.browser.show(ui, layout.page(), &mut controls) {
@@ -283,6 +286,11 @@ impl Window {
         let bound = binding::follow(ui, self.browser.library(), &mut controls);
         let learnt = bound.or_else(|| learn::follow(ui, &mut controls));
         let learnt = learnt.or_else(|| carry::follow(ui, self.shown.guide(), &mut controls));
+        let learnt = learnt.or_else(|| controls.interaction.said.take());
+        // What is dragged may have gone with its page.
+        if !ui.input(|input| input.pointer.any_down()) {
+            controls.release();
+        }
         if let Some(messages) = learnt.or_else(|| params.link().take_messages()).or(played) {
             self.message = messages;
         }
