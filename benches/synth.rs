@@ -69,6 +69,19 @@ fn voices(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// Sixteen held notes of factory sounds that something goes on touching: a bow, a reed, lips, an edge, a loose mass.
+fn touching(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("touching");
+    group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(FRAMES as u64));
+    Level::ALL.into_iter().rev().any(Level::force);
+    for name in ["Violin", "Clarinet", "Trumpet", "Sitar", "Prepared Piano"] {
+        let patch = Preset::find(name).expect("the factory has it").patch.clone().with(Param::Voices, VOICES as f32);
+        let mut chord = Chord::new(&patch, VOICES);
+        group.bench_function(name, |bencher| bencher.iter(|| chord.process(false)));
+    }
+    group.finish();
+}
+
 /// Silence.
 fn idle(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("idle");
@@ -86,5 +99,5 @@ fn quick() -> Criterion {
     Criterion::default().warm_up_time(short / 3).measurement_time(short).sample_size(20).nresamples(2000)
 }
 
-criterion_group! { name = benches; config = quick(); targets = chords, voices, idle }
+criterion_group! { name = benches; config = quick(); targets = chords, voices, touching, idle }
 criterion_main!(benches);
