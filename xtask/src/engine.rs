@@ -3,6 +3,8 @@
 #[cfg(feature = "engine")]
 mod bench_table;
 #[cfg(feature = "engine")]
+mod beside;
+#[cfg(feature = "engine")]
 mod callgrind;
 #[cfg(feature = "engine")]
 mod cross;
@@ -73,8 +75,12 @@ pub(crate) enum Chore {
         #[arg(long)]
         write: bool,
     },
-    /// Measure the factory's presets and write the results to assets/measures/results.md.
-    Measure,
+    /// Measure the factory's presets and write the results to assets/measures/results.md; or beside two soundfonts.
+    Measure {
+        /// Play General MIDI's programs on two soundfonts too, by FluidSynth, and print where a preset stands beside both.
+        #[arg(long, num_args = 2, value_names = ["FONT.sf2", "FONT.sf2"])]
+        beside: Vec<PathBuf>,
+    },
 }
 
 /// Does a chore.
@@ -96,7 +102,10 @@ pub(crate) fn run(chore: &Chore) -> Result<(), String> {
             web::run(&web::Options { rustc: rustc.as_deref(), serve, check, picture })
         }
         Chore::Level { write } => level::run(*write),
-        Chore::Measure => measure::run(),
+        Chore::Measure { beside } => match &beside[..] {
+            [one, other] => beside::run([one, other]),
+            _ => measure::run(),
+        },
     }
 }
 

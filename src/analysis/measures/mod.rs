@@ -3,6 +3,7 @@
 //! Their thresholds come from 249 recordings (the FluidR3 soundfont and the drum kits of Hydrogen): nine of ten
 //! recordings pass each. All measures take one channel at [`RATE`], from its onset on.
 
+pub mod held;
 pub mod octaves;
 pub mod preset;
 pub mod recordings;

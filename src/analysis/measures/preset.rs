@@ -1,5 +1,6 @@
 //! Measures a preset, from notes that it plays, and compares the values with wanted ranges.
 
+use super::held;
 use super::octaves::{CENTRES, octaves};
 use super::recordings::{self, Recording};
 use super::{
@@ -141,7 +142,7 @@ pub fn wanted_loudness(preset: &Preset) -> RangeInclusive<f64> {
 }
 
 /// Whether a sound lasts as long as its key is held. Then it has neither contact nor decay that could be measured.
-fn is_sustained(preset: &Preset) -> bool {
+pub fn is_sustained(preset: &Preset) -> bool {
     use Family::{Bowed, Drone, Lead, Pad, Wind};
     matches!(preset.guide.family, Some(Bowed | Drone | Lead | Pad | Wind))
         || preset.tags.iter().any(|tag| SUSTAINED.contains(&tag.as_str()))
@@ -162,6 +163,26 @@ pub fn loudness(preset: &Preset) -> Result<Option<f64>> {
     loudest(&Player { kit: preset.kit() }.note(preset.guide.home, 100, held, held + 1.0))
 }
 
+/// Figures of one note of any sound, from its onset on: their names, units and values. Of a sound that lasts as long as its key is held,
+/// with its pitch in hertz, also those of [`held`].
+pub fn of_sound(sound: &[f32], held_at: Option<f64>) -> Vec<(&'static str, &'static str, Option<f64>)> {
+    let mut figures = vec![
+        ("attack flatness", "dB", Some(attack_flatness(sound))),
+        ("energy above 2 kHz", "dB", Some(high_share(sound))),
+        ("motion", "dB", motion(sound)),
+        ("partials", "", Some(partials(sound) as f64)),
+    ];
+    if let Some(pitch) = held_at {
+        figures.extend([
+            ("valleys between partials", "dB", held::valleys(sound, pitch)),
+            ("entry of partials", "ms", held::entry(sound, pitch)),
+            ("wobble at one rate", "times", held::regularity(sound, pitch)),
+            ("change of colour", "octaves", held::colour(sound)),
+        ]);
+    }
+    figures
+}
+
 /// Measures a preset. It takes about half a second.
 ///
 /// # Errors
@@ -179,12 +200,16 @@ pub fn measure(preset: &Preset) -> Result<Vec<Measure>> {
 
     let long = note(100, 4.0);
     let sound = from_onset(&long);
-    let mut all = vec![
-        new("attack flatness", "dB", Some(attack_flatness(sound)), struck(least.attack_flatness..=0.0)),
-        new("energy above 2 kHz", "dB", Some(high_share(sound)), acoustic(least.high_share..=0.0)),
-        new("motion", "dB", motion(sound), struck(least.motion..=f64::INFINITY)),
-        new("partials", "", Some(partials(sound) as f64), struck(least.partials as f64..=f64::INFINITY)),
+    let wanted = [
+        struck(least.attack_flatness..=0.0),
+        acoustic(least.high_share..=0.0),
+        struck(least.motion..=f64::INFINITY),
+        struck(least.partials as f64..=f64::INFINITY),
     ];
+    let figures = of_sound(sound, sustained.then(|| frequency_from_key(home.into(), 440.0)));
+    let wanted = wanted.into_iter().chain(std::iter::repeat(None));
+    let mut all: Vec<Measure> =
+        figures.into_iter().zip(wanted).map(|((name, unit, value), wanted)| new(name, unit, value, wanted)).collect();
     if let Some(recording) = recording {
         let (from, to) = (recording.high_share.start() - HIGH_SHARE_DB, recording.high_share.end() + HIGH_SHARE_DB);
         all[1].wanted = Some(from..=to);
