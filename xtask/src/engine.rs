@@ -104,7 +104,8 @@ pub(crate) fn run(chore: &Chore) -> Result<(), String> {
         Chore::Level { write } => level::run(*write),
         Chore::Measure { beside } => match &beside[..] {
             [one, other] => beside::run([one, other]),
-            _ => measure::run(),
+            [] => measure::run(),
+            _ => Err("--beside: expected two soundfonts, once".to_owned()),
         },
     }
 }

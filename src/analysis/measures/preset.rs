@@ -19,6 +19,9 @@ use libm::{fabs, log};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+/// The name of [`high_share`] among the figures.
+const HIGH_SHARE: &str = "energy above 2 kHz";
+
 /// Tag of sounds that are no acoustic instrument: noise, motion and several partials are not required of them.
 pub const SYNTHESIS: &str = "synthesis";
 
@@ -168,7 +171,7 @@ pub fn loudness(preset: &Preset) -> Result<Option<f64>> {
 pub fn of_sound(sound: &[f32], held_at: Option<f64>) -> Vec<(&'static str, &'static str, Option<f64>)> {
     let mut figures = vec![
         ("attack flatness", "dB", Some(attack_flatness(sound))),
-        ("energy above 2 kHz", "dB", Some(high_share(sound))),
+        (HIGH_SHARE, "dB", Some(high_share(sound))),
         ("motion", "dB", motion(sound)),
         ("partials", "", Some(partials(sound) as f64)),
     ];
@@ -200,20 +203,21 @@ pub fn measure(preset: &Preset) -> Result<Vec<Measure>> {
 
     let long = note(100, 4.0);
     let sound = from_onset(&long);
-    let wanted = [
-        struck(least.attack_flatness..=0.0),
-        acoustic(least.high_share..=0.0),
-        struck(least.motion..=f64::INFINITY),
-        struck(least.partials as f64..=f64::INFINITY),
-    ];
+    let wanted = |name: &str| match name {
+        "attack flatness" => struck(least.attack_flatness..=0.0),
+        HIGH_SHARE => acoustic(least.high_share..=0.0),
+        "motion" => struck(least.motion..=f64::INFINITY),
+        "partials" => struck(least.partials as f64..=f64::INFINITY),
+        _ => None,
+    };
     let figures = of_sound(sound, sustained.then(|| frequency_from_key(home.into(), 440.0)));
-    let wanted = wanted.into_iter().chain(std::iter::repeat(None));
     let mut all: Vec<Measure> =
-        figures.into_iter().zip(wanted).map(|((name, unit, value), wanted)| new(name, unit, value, wanted)).collect();
+        figures.into_iter().map(|(name, unit, value)| new(name, unit, value, wanted(name))).collect();
     if let Some(recording) = recording {
         let (from, to) = (recording.high_share.start() - HIGH_SHARE_DB, recording.high_share.end() + HIGH_SHARE_DB);
-        all[1].wanted = Some(from..=to);
-        all[1].note = recording.name.clone();
+        for measure in all.iter_mut().filter(|measure| measure.name == HIGH_SHARE) {
+            (measure.wanted, measure.note) = (Some(from..=to), recording.name.clone());
+        }
         if !sustained {
             all.push(decay(sound, recording, (!drum).then_some(home)));
         }

@@ -2,27 +2,46 @@
 
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
+// The velocity of a strike by a pointer at rest, as in the plugin, and how much harder it is for each pixel a millisecond.
+const [AT_REST, PER_SPEED] = [0.7, 0.2];
+const RECENT = 80; // ms
+
 // `player` is the page’s own, with the preset that is heard; `strike(place, velocity)` is called for a click, without a place if the
-// body has none there. Returns a function that takes the energies of the modes.
+// body has none there. Returns functions that take the energies of the modes, and that say that the body is another.
 export function drawBody(canvas, player, strike) {
-  let [before, last] = [performance.now(), undefined];
+  let [before, moves, drawn, renewed] = [performance.now(), [], "", 0];
   let energies = new Float32Array(64);
   const size = () => [canvas.clientWidth, canvas.clientHeight];
 
   canvas.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
     const box = canvas.getBoundingClientRect();
-    const moving = last ? Math.hypot(event.clientX - last[0], event.clientY - last[1]) / Math.max(1, event.timeStamp - last[2]) : 0;
+    const first = moves.find(([, , time]) => event.timeStamp - time < RECENT);
+    const way = first ? Math.hypot(event.clientX - first[0], event.clientY - first[1]) : 0;
+    const speed = way / Math.max(1, event.timeStamp - (first?.[2] ?? 0));
     const place = player.touch(...size(), event.clientX - box.x, event.clientY - box.y);
-    // As in the plugin: a pointer at rest strikes with 0.7, one that moves harder, 1.5 pixels a millisecond with all force.
-    strike(place, Math.min(127, Math.round(127 * (0.7 + 0.2 * moving))));
+    strike(place, Math.min(127, Math.round(127 * (AT_REST + PER_SPEED * speed))));
   });
-  canvas.addEventListener("pointermove", (event) => (last = [event.clientX, event.clientY, event.timeStamp]));
+  canvas.addEventListener("pointermove", (event) => {
+    moves = moves.filter(([, , time]) => event.timeStamp - time < RECENT).concat([[event.clientX, event.clientY, event.timeStamp]]);
+  });
+  for (const end of ["pointerup", "pointercancel", "pointerleave"]) canvas.addEventListener(end, () => (moves = []));
+  canvas.addEventListener("keydown", (event) => {
+    if (event.repeat || (event.key !== "Enter" && event.key !== " ")) return;
+    event.preventDefault();
+    strike(undefined, Math.round(127 * AT_REST));
+  });
 
   function frame(now) {
+    requestAnimationFrame(frame);
     const seconds = Math.min(0.25, (now - before) / 1000);
     before = now;
     const scale = Math.min(2, devicePixelRatio);
     const [width, height] = size();
+    // A body at rest stays as it was drawn.
+    const still = energies.some((energy) => energy > 0) ? "" : [width, height, scale, colour("--gold"), renewed].join();
+    if (width === 0 || height === 0 || (still !== "" && still === drawn)) return;
+    drawn = still;
     if (canvas.width !== Math.round(width * scale)) canvas.width = Math.round(width * scale);
     if (canvas.height !== Math.round(height * scale)) canvas.height = Math.round(height * scale);
     const context = canvas.getContext("2d");
@@ -30,10 +49,9 @@ export function drawBody(canvas, player, strike) {
     context.clearRect(0, 0, width, height);
     const gold = colour("--gold");
     paint(context, player.draw(energies, width, height, seconds, Number.parseInt(gold.slice(1), 16)), gold);
-    requestAnimationFrame(frame);
   }
   requestAnimationFrame(frame);
-  return (look) => (energies = look);
+  return { swing: (look) => (energies = look), renew: () => renewed++ };
 }
 
 // The numbers are as the module’s `draw` says.

@@ -26,7 +26,7 @@ async function start() {
   made.port.onmessage = ({ data }) => {
     if (data.masses) {
       show(data.masses);
-      swing(data.masses.subarray(1, 65));
+      body.swing(data.masses.subarray(1, 65));
     }
     if (data.played) {
       state.take.push(data.played);
@@ -59,19 +59,28 @@ const show = draw(element("modes"), element("plane"), (pull) => {
   setTimeout(() => play(key, false), 400);
 });
 
-const swing = drawBody(element("body"), own, (place, velocity) => {
-  if (place) {
-    own.play({ strike: place }, 0);
-    send({ strike: place });
-  }
+// The key that a click on the body holds, and lets go of a while later.
+let held;
+function letGo() {
+  if (!held) return;
+  clearTimeout(held.timer);
+  play(held.key, false);
+  held = undefined;
+}
+
+const body = drawBody(element("body"), own, (place, velocity) => {
+  letGo();
+  if (place) send({ strike: place });
   const key = state.preset.home;
   play(key, true, velocity);
-  setTimeout(() => play(key, false), 700);
+  held = { key, timer: setTimeout(letGo, 700) };
+  if (place) own.play({ strike: place }, 0), body.renew();
 });
 
 function choose(preset) {
   state.preset = preset;
   own.play({ preset: preset.number }, 0);
+  body.renew();
   state.key = preset.home;
   element("about").textContent = preset.comment;
   element("macros").replaceChildren(...preset.macros.map(slider).filter(Boolean));
@@ -122,6 +131,8 @@ element("forget").onclick = async () => {
   element("wheel").value = 0;
   choose(state.preset);
   await old?.context.close();
+  body.swing(new Float32Array(64));
+  show(new Float32Array(129));
 };
 
 // A message of a keyboard; the page’s wheel follows the keyboard’s.

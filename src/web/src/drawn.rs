@@ -4,7 +4,7 @@ use ecolor::Color32;
 use emath::{Pos2, Rect, pos2, vec2};
 use sprung::preset::Preset;
 use sprung::sound::bodies::Point;
-use sprung_picture::{BodyShape, Picture, Swing};
+use sprung_picture::{BodyShape, Origin, Picture, Swing};
 
 /// Number of modes that are shown.
 pub(crate) const SHOWN: usize = 64;
@@ -66,7 +66,7 @@ impl Drawn {
         let Point { x, y } = self.shape.confined(point);
         self.numbers.clear();
         self.numbers.extend([x as f32, y as f32]);
-        distance <= REACH && self.shape.origin.body().is_some()
+        distance <= REACH && matches!(self.shape.origin, Origin::FromBody(_))
     }
 }
 

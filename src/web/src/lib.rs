@@ -2,7 +2,8 @@
 //!
 //! A page shares no memory with its audio worklet, so each has an instance of the module of its own: the worklet's
 //! instance plays, the page's instance lists the presets and renders takes. Addresses are valid until the next call
-//! that allocates: [`create`], [`presets`], [`load`], [`strike_at`], [`draw`] or [`touch`].
+//! that allocates: [`create`], [`presets`], [`load`], [`strike_at`], [`process`] after one of these, [`energies`], [`draw`], [`numbers`] or [`touch`]; of these
+//! four, the first after another preset computes the shapes of its modes, which is slow.
 
 mod drawn;
 mod player;
@@ -46,7 +47,8 @@ pub unsafe extern "C" fn text(player: *mut Player) -> *const u8 {
     unsafe { at(player) }.text().as_ptr()
 }
 
-/// Plays a preset from now on, by its index in the list. Allocates. An index beyond the list changes nothing.
+/// Plays a preset from the next block on, by its index in the list. Allocates, and so does that block. An index beyond the list changes
+/// nothing.
 ///
 /// # Safety
 /// `player` is from [`create`].
@@ -76,7 +78,7 @@ pub unsafe extern "C" fn turn(player: *mut Player, frame: u32, number: usize, va
     unsafe { at(player) }.turn(frame, number, value);
 }
 
-/// Renders the next block of up to [`BLOCK`] frames. Returns whether anything sounds. Real-time safe.
+/// Renders the next block of up to [`BLOCK`] frames. Returns whether anything sounds. Real-time safe, but for a preset that begins.
 ///
 /// # Safety
 /// `player` is from [`create`].
@@ -107,8 +109,8 @@ pub unsafe extern "C" fn look(player: *mut Player) -> *const f32 {
     unsafe { at(player) }.look().as_ptr()
 }
 
-/// Lets the body of the preset be struck at a place from now on, each coordinate from 0 to 1. Allocates. A table of modes, which has no
-/// body, stays as it is.
+/// Lets the body of the preset be struck at a place from the next block on, each coordinate from 0 to 1. Allocates. A table of modes,
+/// which has no body, and two joined bodies stay as they are.
 ///
 /// # Safety
 /// `player` is from [`create`].

@@ -21,6 +21,8 @@ pub struct Player {
     shown: [f32; 1 + 2 * SHOWN],
     text: String,
     preset: Preset,
+    /// Whether it is set with the next block: a page only draws it.
+    is_new: bool,
     /// Its body, where it is drawn.
     drawn: Option<Drawn>,
 }
@@ -32,7 +34,7 @@ impl Player {
         let (sides, shown) = ([[0.0; BLOCK]; 2], [0.0; 1 + 2 * SHOWN]);
         let events = Vec::with_capacity(MESSAGES);
         let preset = Preset::factory()[0].clone();
-        let mut player = Self { synth, events, sides, shown, text: String::new(), preset, drawn: None };
+        let mut player = Self { synth, events, sides, shown, text: String::new(), preset, is_new: true, drawn: None };
         player.take_preset();
         player
     }
@@ -61,18 +63,25 @@ impl Player {
         }
     }
 
-    /// Lets the body of the preset be struck elsewhere. A table of modes knows nothing of places, and stays as it is.
+    /// Lets the body of the preset be struck elsewhere; its parameters stay. A table of modes knows nothing of places, and two joined
+    /// bodies take too long to compute while others sound: both stay as they are.
     pub(crate) fn strike_at(&mut self, x: f64, y: f64) {
         let mut origin = Origin::of(&self.preset.patch.modes);
         let point = Point { x: x.clamp(0.0, 1.0), y: y.clamp(0.0, 1.0) };
+        if origin.pair().is_some() || origin.body().is_none_or(|body| body.strike == point) {
+            return;
+        }
         if let Some(modes) = origin.struck_at(point) {
+            if !self.is_new {
+                self.preset.patch.values = *self.synth.values();
+            }
             self.preset.patch.modes = modes;
             self.take_preset();
         }
     }
 
     fn take_preset(&mut self) {
-        self.synth.set_kit(&self.preset.kit());
+        self.is_new = true;
         let mut ratios = self.preset.patch.modes.as_slice().iter().map(|mode| mode.ratio);
         self.shown[1 + SHOWN..].fill_with(|| ratios.next().unwrap_or(0.0));
         self.drawn = None;
@@ -105,6 +114,9 @@ impl Player {
 
     pub(crate) fn process(&mut self, frames: usize) -> bool {
         let frames = frames.min(BLOCK);
+        if std::mem::take(&mut self.is_new) {
+            self.synth.set_kit(&self.preset.kit());
+        }
         let [left, right] = &mut self.sides;
         self.synth.process(&self.events, &mut left[..frames], &mut right[..frames]);
         self.events.clear();
@@ -173,11 +185,17 @@ mod tests {
         assert_eq!(player.drawn().draw(size, 0.3, 0xff_ff_ff), still);
         assert_ne!(player.drawn().numbers, before);
         assert!(!player.drawn().touch(size, [1.0, 1.0]), "beside it");
-        assert!(player.drawn().touch(size, [260.0, 330.0]));
+        assert!(!player.drawn().touch(size, [300.0, 300.0]), "two joined bodies stay as they are");
+        player.load(Preset::factory().iter().position(|preset| preset.name == "Gong").unwrap());
+        assert!(player.drawn().touch(size, [360.0, 210.0]));
         let [x, y] = player.drawn().numbers[..] else { panic!("a point") };
         let modes = player.preset.patch.modes.clone();
+        player.turn(0, 0, 100.0);
+        player.process(64);
         player.strike_at(x.into(), y.into());
         assert_ne!(player.preset.patch.modes, modes);
+        player.process(64);
+        assert_eq!(player.synth.values().get(macro_param(0).unwrap()), 100.0, "a macro stays where it was turned to");
         player.load(Preset::factory().iter().position(|preset| preset.name == "Piccolo").unwrap());
         let modes = player.preset.patch.modes.clone();
         player.strike_at(f64::NAN, 2.0);

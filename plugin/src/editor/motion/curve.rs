@@ -73,7 +73,14 @@ impl Curve {
             }
             _ => return,
         };
-        for corner in corners {
+        // What a longer stage pushes out of the picture waits there until the corner is let go.
+        let is_held =
+            |corner: &Corner| self.grab.as_ref().is_some_and(|grab| grab.corner.info.param == corner.info.param);
+        let shown: Vec<Corner> = corners
+            .into_iter()
+            .filter(|corner| is_held(corner) || rect.expand(GRIP / 2.0).contains(corner.place))
+            .collect();
+        for corner in shown {
             self.follow(ui, corner, whole, controls);
         }
     }
@@ -93,7 +100,8 @@ impl Curve {
         if let (Some(grab), Some(pointer), true) = (grab, pointer, response.dragged_by(PointerButton::Primary)) {
             let by = pointer - grab.pointer;
             let position = info.normalise(info.clamp(grab.corner.dragged(by) as f32));
-            if by != Vec2::ZERO && position as f32 != controls.position(info) {
+            let is_moving = controls.interaction.gestures.moving() == Some(info.param as usize);
+            if (by != Vec2::ZERO || is_moving) && position as f32 != controls.position(info) {
                 controls.turn(info, position);
             }
         }
