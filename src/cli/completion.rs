@@ -68,6 +68,7 @@ pub(super) fn presets(typed: &OsStr) -> Vec<CompletionCandidate> {
 }
 
 /// Completes the ids of parameters.
+#[cfg(feature = "play")]
 pub(super) fn parameters(typed: &OsStr) -> Vec<CompletionCandidate> {
     let matching = PARAMS.iter().filter(|info| info.id.starts_with(&*typed.to_string_lossy()));
     matching.map(|info| CompletionCandidate::new(info.id).help(Some(info.help.into()))).collect()
