@@ -11,13 +11,13 @@ use std::sync::Arc;
 pub const KEYS: usize = 128;
 
 /// Range of a pad's gain, in decibels.
-pub(crate) const GAINS_DB: RangeInclusive<f32> = -60.0..=12.0;
+pub const GAINS_DB: RangeInclusive<f32> = -60.0..=12.0;
 
 /// Range of a pad's pitch, in semitones on the MIDI scale: wide enough for every key and every audible frequency.
 pub(crate) const PITCHES: RangeInclusive<f64> = -60.0..=200.0;
 
 /// Number of the last choke group.
-pub(crate) const CHOKE_GROUPS: u8 = 16;
+pub const CHOKE_GROUPS: u8 = 16;
 
 /// Number of stereo outputs beside the main one.
 pub const OUTPUTS: usize = 16;

@@ -3,7 +3,7 @@
 //! All take one channel at [`RATE`], from its onset on, and the pitch in hertz. What recordings have of them, `cargo xtask measure
 //! --beside` tells of two soundfonts: in FluidR3 and TimGM6mb, most held programs have valleys of 30 to 80 dB.
 
-use super::{decibels, power, samples};
+use super::{decibels, hann, power, samples};
 use crate::analysis::log_mel::RATE;
 use libm::{cos, log2, sin, sqrt};
 use std::f64::consts::PI;
@@ -27,8 +27,8 @@ const LEAST_WOBBLE_DB: f64 = 0.2;
 
 /// A window whose side lobes lie below the noise of 32-bit samples a few bins from the middle: the fourth power of Hann's.
 fn steep(at: f64) -> f64 {
-    let hann = 0.5 - 0.5 * cos(2.0 * PI * at);
-    hann * hann * hann * hann
+    let once = hann(at);
+    once * once * once * once
 }
 
 /// A part of a sound between two times in seconds; none if the sound is shorter.
@@ -74,7 +74,7 @@ fn levels(sound: &[f32], pitch: f64, number: usize, periods: f64, rate: f64) -> 
     let step = 2.0 * PI * number as f64 * pitch / f64::from(RATE);
     let weights: Vec<[f64; 2]> = (0..length)
         .map(|n| {
-            let weight = 0.5 - 0.5 * cos(2.0 * PI * n as f64 / length as f64);
+            let weight = hann(n as f64 / length as f64);
             [weight * cos(step * n as f64), weight * sin(step * n as f64)]
         })
         .collect();
@@ -123,7 +123,7 @@ pub fn regularity(sound: &[f32], pitch: f64) -> Option<f64> {
             let apart = from_line(&levels)?;
             let square = apart.iter().map(|level| f64::from(*level) * f64::from(*level)).sum::<f64>();
             let length = apart.len().next_power_of_two();
-            let bins = power(&apart, |at| 0.5 - 0.5 * cos(2.0 * PI * at), length);
+            let bins = power(&apart, hann, length);
             let bin = |rate: f64| (rate * length as f64 / LEVELS_PER_SECOND) as usize;
             // A line is as wide as the window's lobe.
             let wide = 2 * length / apart.len();

@@ -15,3 +15,6 @@ pub use origin::{Origin, model_name};
 pub use shape::{BodyShape, small_figure};
 pub use surface::Picture;
 pub use swing::Swing;
+
+/// How far from the body a click still touches it, in pixels.
+pub const REACH: f32 = 26.0;

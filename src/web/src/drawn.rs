@@ -4,13 +4,10 @@ use ecolor::Color32;
 use emath::{Pos2, Rect, pos2, vec2};
 use sprung::preset::Preset;
 use sprung::sound::bodies::Point;
-use sprung_picture::{BodyShape, Origin, Picture, Swing};
+use sprung_picture::{BodyShape, Origin, Picture, REACH, Swing};
 
 /// Number of modes that are shown.
 pub(crate) const SHOWN: usize = 64;
-
-/// How far from the body a click still touches it, in pixels.
-const REACH: f32 = 26.0;
 
 /// A body that swings.
 pub(crate) struct Drawn {

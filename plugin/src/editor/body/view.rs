@@ -12,11 +12,8 @@ use crate::loaded::Loaded;
 use egui::{CursorIcon, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
 use sprung::params::Param;
 use sprung::sound::bodies::Point;
-use sprung_picture::{BodyShape, Form, Origin, Swing};
+use sprung_picture::{BodyShape, Form, Origin, REACH, Swing};
 use std::sync::Arc;
-
-/// How far from the body a click still touches it, in pixels.
-const REACH: f32 = 26.0;
 
 /// A drag of the strike's place in progress.
 struct Drag {

@@ -17,6 +17,7 @@ use egui::{Align2, Id, Key, Rect, TextEdit, Ui, UiBuilder, pos2, vec2};
 use sprung::params::Param;
 use sprung::preset::{Playable, Preset, with_ending};
 use sprung::sound::Pad;
+use sprung::sound::kit::{CHOKE_GROUPS, GAINS_DB, OUTPUTS};
 use sprung::units::{note_name, number_in_unit, parse_key};
 use sprung_picture::Figure;
 use std::sync::Arc;
@@ -24,8 +25,7 @@ use std::sync::Arc;
 /// Height of a row with a name and a choice, and width of the name.
 const ROW: f32 = 26.0;
 const NAMES: f32 = 52.0;
-/// Ranges of level in dB and of the pitch in keys.
-const GAINS: [f64; 2] = [-60.0, 12.0];
+/// Range of the pitch in keys.
 const PITCHES: [f64; 2] = [0.0, 127.0];
 
 /// The state of the panel.
@@ -155,7 +155,7 @@ impl Detail {
             title: "Level",
             help: "Louder or softer than the sound is by itself.",
             value: now.gain_db.into(),
-            range: GAINS,
+            range: [*GAINS_DB.start(), *GAINS_DB.end()].map(f64::from),
             speed: 0.1,
             is_whole: false,
             written: &|level| written(level, "dB"),
@@ -214,9 +214,10 @@ impl Detail {
 fn choices(ui: &Ui, rows: [Rect; 2], shown: &Shown, pad: &Pad, controls: &mut Controls) -> Option<(Pad, String)> {
     let own = shown.loaded().kit.choke(&Pad { choke: None, ..pad.clone() }, controls.value(Param::Choke.info()));
     let own = if own == 0 { "none".to_owned() } else { own.to_string() };
-    let numbers = || (1..=16).map(|number: u8| number.to_string());
-    let groups: Vec<String> = [format!("the sound’s: {own}"), "none".to_owned()].into_iter().chain(numbers()).collect();
-    let outputs: Vec<String> = std::iter::once("main".to_owned()).chain(numbers()).collect();
+    let up_to = |last: usize| (1..=last).map(|number| number.to_string());
+    let groups = [format!("the sound’s: {own}"), "none".to_owned()].into_iter().chain(up_to(CHOKE_GROUPS.into()));
+    let outputs = std::iter::once("main".to_owned()).chain(up_to(OUTPUTS));
+    let (groups, outputs): (Vec<String>, Vec<String>) = (groups.collect(), outputs.collect());
     let place = pad.choke.map_or(0, |group| usize::from(group) + 1);
     let group = choice(ui, rows[0], ("Choke", "Pads of one group silence each other."), (&groups, place), controls);
     let help = "The stereo output in Sprung Multi; other plugins have the main one only.";

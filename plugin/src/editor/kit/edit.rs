@@ -3,6 +3,7 @@
 use crate::editor::controls::Controls;
 use crate::editor::controls::gestures::load;
 use crate::state::State;
+use sprung::params::Param;
 use sprung::preset::{KitPreset, Playable, Preset, with_ending};
 use sprung::sound::Pad;
 use sprung::units::note_name;
@@ -29,16 +30,16 @@ pub(super) fn edited(controls: &Controls, edit: impl FnOnce(&mut KitPreset)) -> 
     edit(&mut after);
     number_by_use(&mut after);
     let is_single = after.sounds.len() == 1;
-    if was_single && is_single && before.sounds != after.sounds {
+    let is_other = was_single && is_single && before.sounds != after.sounds;
+    if is_other {
         // Another sound has its own effects.
         after.params = kit.params.clone();
     }
-    Some(match (was_single, is_single) {
-        (false, false) => State { playable: Playable::Kit(after), ..state },
-        (true, true) if before.sounds == after.sounds => State { playable: Playable::Kit(after), ..state },
-        (false, true) => State::new(Playable::Kit(after.with_moves(&state.values)), state.seed, state.view),
-        _ => State::new(Playable::Kit(after), state.seed, state.view),
-    })
+    if was_single == is_single && !is_other {
+        return Some(State { playable: Playable::Kit(after), ..state });
+    }
+    let after = if is_single && !was_single { after.with_moves(&state.values) } else { after };
+    Some(State::new(Playable::Kit(after), state.seed, state.view))
 }
 
 /// A kit with one pad that plays a preset.
@@ -50,7 +51,7 @@ pub(super) fn kit_of(preset: Preset) -> KitPreset {
         tags: vec!["kit".to_owned()],
         comment: String::new(),
         details: String::new(),
-        voices: sprung::params::Param::Voices.info().max as u8,
+        voices: Param::Voices.info().max as u8,
         params: Vec::new(),
         sounds: Vec::new(),
         pads: Vec::new(),

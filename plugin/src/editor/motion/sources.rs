@@ -30,10 +30,14 @@ const AROUND: f32 = 14.0;
 /// Width of the mark of a source that has routes.
 const DOT: f32 = 9.0;
 
+/// The section whose curve a source has.
+fn drawn(source: Source) -> Option<&'static str> {
+    DRAWN.iter().find(|(own, _)| *own == source).map(|(_, section)| *section)
+}
+
 /// The section whose knobs a source has.
 pub(in crate::editor) fn section_of(source: Source) -> Option<&'static str> {
-    let drawn = DRAWN.iter().find(|(own, _)| *own == source).map(|(_, section)| *section);
-    drawn.or(source.id().starts_with("macro").then_some("Macros"))
+    drawn(source).or(source.id().starts_with("macro").then_some("Macros"))
 }
 
 /// How many routes a source has.
@@ -50,13 +54,12 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, contr
         let names: Vec<(Source, String)> =
             Source::ALL.iter().map(|source| (*source, source_name(*source, shown.guide()))).collect();
         let whole = ui.available_width() - SPACE;
-        let is_drawn = |source: Source| DRAWN.iter().any(|(own, _)| *own == source);
         let is_macro = |source: Source| section_of(source) == Some("Macros");
         let played = names.iter().filter(|(source, _)| section_of(*source).is_none());
         let macros = names.iter().filter(|(source, _)| is_macro(*source));
         let mut places = Vec::new();
         let mut top = TITLE;
-        for (source, name) in names.iter().filter(|(source, _)| is_drawn(*source)) {
+        for (source, name) in names.iter().filter(|(source, _)| drawn(*source).is_some()) {
             places.push((*source, name, Rect::from_min_size(pos2(0.0, top), vec2(whole, TILE))));
             top += TILE + SPACE;
         }
@@ -133,9 +136,9 @@ fn show_source(
     }
     let colour = if used > 0 || is_chosen { palette.text } else { palette.muted };
     let named = line(ui.painter(), inside, Align2::LEFT_CENTER, name, TEXT, colour);
-    if let Some((_, section)) = DRAWN.iter().find(|(own, _)| *own == source) {
+    if let Some(section) = drawn(source) {
         let picture = inside.with_min_x((named.right() + 10.0).max(inside.center().x)).shrink2(vec2(0.0, 5.0));
-        sections(&[*section]).for_each(|section| curves::paint(ui.painter(), picture, section, controls));
+        sections(&[section]).for_each(|section| curves::paint(ui.painter(), picture, section, controls));
     }
     response.clicked()
 }

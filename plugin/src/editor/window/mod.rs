@@ -204,20 +204,22 @@ impl Window {
         let request = header::show(ui, layout.header, &header, &mut controls);
         let down = (0..16).fold(0, |down, channel| down | telemetry.keys(channel));
         let voices = if is_silent { 0 } else { snapshot.voices };
-        if self.over.is_some() || self.face != Face::Sound {
+        let seen = self.over.is_none().then_some(self.face);
+        if seen != Some(Face::Sound) {
             self.modes.cancel(&mut controls);
             self.displays.cancel(&mut controls);
             self.pages.leave(&mut controls);
         }
-        if self.over.is_some() || self.face != Face::Play {
+        if seen != Some(Face::Play) {
             self.play.leave(&mut controls);
         }
-        if self.over.is_some() || self.face != Face::Kit {
+        if seen != Some(Face::Kit) {
             self.kit.leave(&mut controls);
         }
-        if self.over.is_some() || self.face != Face::Motion {
+        if seen != Some(Face::Motion) {
             self.motion.leave();
         }
+        let mut read = None;
         match self.over {
             Some(Over::Browser) => {
                 if let Some((message, is_done)) = self.browser.show(ui, layout.page(), &mut controls) {
@@ -237,29 +239,28 @@ impl Window {
             }
             None if self.face == Face::Motion => {
                 if self.motion.show(ui, layout.page(), &self.shown, &mut controls).is_some() {
-                    self.manual.open("modulation");
-                    self.over = Some(Over::Manual);
+                    read = Some("modulation");
                 }
             }
             None if self.face == Face::Kit => {
                 let (page, others) = (layout.page(), (down, &mut self.browser));
                 if self.kit.show(ui, page, &mut self.shown, others, &mut controls).is_some() {
-                    self.manual.open("kits");
-                    self.over = Some(Over::Manual);
+                    read = Some("kits");
                 }
             }
             None => {
                 self.modes.show(ui, layout.modes, &self.shown, &energies, &mut controls);
                 self.displays.show(ui, layout.displays, &self.shown, (&energies, self.modes.selected()), &mut controls);
                 match self.pages.show(ui, &layout, &self.shown, (down, voices), &mut controls) {
-                    Some(pages::Request::Manual) => {
-                        self.manual.open(self.pages.topic());
-                        self.over = Some(Over::Manual);
-                    }
+                    Some(pages::Request::Manual) => read = Some(self.pages.topic()),
                     Some(pages::Request::Say(message)) => self.message = message,
                     None => {}
                 }
             }
+        }
+        if let Some(topic) = read {
+            self.manual.open(topic);
+            self.over = Some(Over::Manual);
         }
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.over = None;
