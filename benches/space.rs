@@ -9,7 +9,7 @@ mod struck;
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use sprung::dsp::random::{key, uniform};
 use sprung::dsp::space::{
-    Decay, ModalReverb, Overdrive, Plate, Resonator, Room, Spring, Strings, Tone, Tremolo, Width,
+    BoxBody, Decay, ModalReverb, Overdrive, Plate, Resonator, Room, Soundbox, Spring, Strings, Tone, Tremolo, Width,
 };
 use sprung::dsp::{CONTROL_FRAMES, Level};
 use std::time::Duration;
@@ -115,6 +115,12 @@ fn effects(criterion: &mut Criterion) {
             });
         };
     }
+    let (mut soundbox, mut voice) = (Soundbox::new(RATE), Soundbox::new(RATE));
+    soundbox.set_mix(0.5);
+    voice.set_mix(0.5);
+    voice.set_body(BoxBody::voice());
+    effect!("soundbox", soundbox);
+    effect!("soundbox, voice", voice);
     let (mut tremolo, mut overdrive, mut tone, mut width) =
         (Tremolo::new(RATE), Overdrive::new(RATE), Tone::new(RATE), Width::new(RATE));
     tremolo.set_depth(0.5);

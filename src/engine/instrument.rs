@@ -2,7 +2,7 @@
 
 use super::controls::Controls;
 use super::knobs::Knobs;
-use super::modulation::{Bus, Positions, Settings, SharedLfos};
+use super::modulation::{Bus, Positions, Settings, SharedLfos, Struck};
 use super::note::Note;
 use super::voice::key_tracking::KeyTracking;
 use crate::params::{PARAM_COUNT, Param};
@@ -140,6 +140,11 @@ impl Instrument {
     /// Whether any sound so far has had routes, so that notes need controller positions.
     pub(crate) fn has_routes(&self) -> bool {
         self.has_routes
+    }
+
+    /// What modulators read of the strike of a note.
+    pub(crate) fn struck(&self, note: &Note) -> Struck {
+        Struck { velocity: note.velocity, pitch: self.pitch(note), seed: self.seed, serial: note.serial }
     }
 
     /// The pitch of a note in semitones on the MIDI scale, with key tracking.

@@ -132,6 +132,22 @@ choices! {
         Rate "rate",
     }
 
+    /// Kind of the body behind the voices.
+    Soundbox {
+        /// None.
+        None "none",
+        /// A violin's body; larger ones are those of viola, cello and bass.
+        Violin "violin",
+        /// A classical guitar's body.
+        Guitar "guitar",
+        /// The soundboard of a grand piano.
+        Soundboard "soundboard",
+        /// A vocal tract.
+        Voice "voice",
+        /// The bell of a trumpet; larger ones are those of trombone, horn and tuba.
+        Horn "horn",
+    }
+
     /// What sympathetic strings are tuned to.
     StringsTuning {
         /// Each key of two octaves.
@@ -256,6 +272,7 @@ mod tests {
         check::<Priority>();
         check::<GlideWhen>();
         check::<GlideBy>();
+        check::<Soundbox>();
         check::<StringsTuning>();
         check::<Space>();
         check::<SpaceMaterial>();
@@ -274,6 +291,7 @@ mod tests {
             Priority::NAMES,
             GlideWhen::NAMES,
             GlideBy::NAMES,
+            Soundbox::NAMES,
             StringsTuning::NAMES,
             Space::NAMES,
             SpaceMaterial::NAMES,

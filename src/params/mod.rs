@@ -44,7 +44,7 @@ pub enum Change {
     NextNote,
     /// At once, smoothed over this many milliseconds.
     Smoothed(u16),
-    /// At once, on the output as a whole. Such a parameter cannot be modulated.
+    /// At once, on the output as a whole. Routes move it for all notes, by what is not of one note's time.
     AtOnce,
 }
 
@@ -88,7 +88,7 @@ mod values;
 
 pub use choice::{
     Choice, Coefficients, GlideBy, GlideWhen, Limiter, MalletPulse, NoiseDecay, NoteOff, NoteValue, PlayMode, Priority,
-    Rattle, Scope, Shape, Space, SpaceMaterial, StringsTuning, Valve,
+    Rattle, Scope, Shape, Soundbox, Space, SpaceMaterial, StringsTuning, Valve,
 };
 pub use table::{PARAM_COUNT, PARAMS, Param};
 pub use values::Values;
@@ -99,10 +99,10 @@ impl Param {
         &PARAMS[self as usize]
     }
 
-    /// Whether it belongs to the effects behind the voices, which all sounds of a kit share: strings, tremolo, drive,
-    /// tone, space, stereo width. Real-time safe.
+    /// Whether it belongs to the effects behind the voices, which all sounds of a kit share: soundbox, strings, tremolo,
+    /// drive, tone, space, stereo width. Real-time safe.
     pub const fn is_behind_voices(self) -> bool {
-        Self::StringsLevel as usize <= self as usize && self as usize <= Self::StereoWidth as usize
+        Self::Soundbox as usize <= self as usize && self as usize <= Self::StereoWidth as usize
     }
 
     /// Whether it is of a kit as a whole, and not of each of its sounds. Real-time safe.
@@ -146,9 +146,9 @@ impl ParamInfo {
         format!("{whole}from {} to {}", self.format(self.min), self.format(self.max))
     }
 
-    /// Whether routes can modulate it: it is a quantity, is not fixed, and does not act on the output as a whole.
+    /// Whether routes can modulate it: it is a quantity and is not fixed.
     pub const fn is_modulatable(&self) -> bool {
-        !matches!(self.unit, Unit::Count | Unit::Choice) && !matches!(self.change, Change::AtOnce) && !self.is_fixed
+        !matches!(self.unit, Unit::Count | Unit::Choice) && !self.is_fixed
     }
 
     /// Smoothing time in frames of a change during a note; none if a sounding note does not follow the parameter.

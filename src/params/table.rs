@@ -348,6 +348,16 @@ table! {
         Choke "choke" "Choke group", Count 0.0..16.0 = 0.0, Linear, NextNote,
             "Notes of a choke group silence each other; 0 is none.";
     }
+    "Soundbox" {
+        Soundbox "soundbox" "Soundbox", Choice[Soundbox] 0.0..5.0 = 0.0, Linear, AtOnce,
+            "A body with resonances of its own, through which all notes pass: none, or a violin's, a guitar's and so on.";
+        SoundboxSize "soundbox_size" "Soundbox size", Percent 25.0..800.0 = 100.0, Logarithmic, AtOnce,
+            "How much larger the body is than a violin, a classical guitar, a concert grand, a man's vocal tract, or a trumpet.";
+        SoundboxVowel "soundbox_vowel" "Soundbox vowel", Percent 0.0..100.0 = 50.0, Linear, AtOnce,
+            "What a voice sings: u at 0 %, then o, a, e, and i at 100 %.";
+        SoundboxMix "soundbox_mix" "Soundbox mix", Percent 0.0..100.0 = 100.0, Linear, AtOnce,
+            "From what is played (0 %) to what the body makes of it (100 %), at equal power.";
+    }
     "Strings" {
         StringsLevel "strings_level" "Strings", Percent 0.0..100.0 = 0.0, Linear, AtOnce,
             "How loudly sympathetic strings ring along with what is played.";

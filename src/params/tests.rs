@@ -31,6 +31,7 @@ fn ids_are_pinned() {
         route1 route2 route3 route4 route5 route6 route7 route8 \
         route9 route10 route11 route12 route13 route14 route15 route16 \
         voices mode priority unison unison_detune unison_spread unison_phase choke \
+        soundbox soundbox_size soundbox_vowel soundbox_mix \
         strings_level strings_tuning strings_tune strings_low_decay strings_high_decay \
         tremolo_depth tremolo_rate tremolo_stereo drive tone_low tone_high \
         space space_size space_material space_low_decay space_high_decay space_pre_delay space_mix stereo_width \

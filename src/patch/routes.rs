@@ -95,6 +95,12 @@ impl Source {
         ((pitch - 60.0) / 60.0).clamp(-1.0, 1.0) as f32
     }
 
+    /// Whether it changes with time alone, for each note by itself: an oscillator or an envelope.
+    pub fn is_moving(self) -> bool {
+        use Source::{Envelope1, Envelope2, Lfo1, Lfo2, Lfo3};
+        matches!(self, Lfo1 | Lfo2 | Lfo3 | Envelope1 | Envelope2)
+    }
+
     /// Whether its values range from −1 to 1; otherwise they range from 0 to 1.
     pub fn is_bipolar(self) -> bool {
         use Source::{Alternation, Bend, Key, Lfo1, Lfo2, Lfo3, Random, Timbre};
@@ -134,7 +140,7 @@ impl Response {
 pub struct Route {
     /// The source.
     pub source: Source,
-    /// The parameter that is modulated: [`crate::params::ParamInfo::is_modulatable`] must be true for it.
+    /// The parameter that is modulated: see [`Route::is_possible`].
     pub destination: Param,
     /// The curve that is applied to the source.
     pub response: Response,
@@ -146,6 +152,15 @@ impl Route {
     /// A route with a linear response and no scale.
     pub const fn linear(source: Source, destination: Param) -> Self {
         Self { source, destination, response: Response::Linear, scale: None }
+    }
+
+    /// Whether it can act: [`crate::params::ParamInfo::is_modulatable`] is true for its destination, and what all notes share is
+    /// not moved by the oscillators and envelopes of one.
+    pub fn is_possible(&self) -> bool {
+        let is_of_a_note = |source: Source| source.is_moving() || source == Source::ReleaseVelocity;
+        let sources = [Some(self.source), self.scale].into_iter().flatten();
+        self.destination.info().is_modulatable()
+            && !(self.destination.is_behind_voices() && sources.into_iter().any(is_of_a_note))
     }
 }
 
@@ -172,10 +187,9 @@ impl Routes {
         self.0.get(place).copied().flatten()
     }
 
-    /// Sets or removes the route at a place. Does nothing if the place does not exist or the destination cannot be
-    /// modulated.
+    /// Sets or removes the route at a place. Does nothing if the place does not exist or the route is not possible.
     pub fn set(&mut self, place: usize, route: Option<Route>) {
-        let is_allowed = route.is_none_or(|route| route.destination.info().is_modulatable());
+        let is_allowed = route.is_none_or(|route| route.is_possible());
         if let Some(slot) = self.0.get_mut(place).filter(|_| is_allowed) {
             *slot = route;
         }

@@ -81,13 +81,19 @@ fn read_route(route: &Table, at: &str) -> Result<Route, String> {
     let responses = || Response::ALL.iter().map(|response| response.id()).collect::<Vec<_>>().join(", ");
     let movable = |id: &str| Param::from_id(id).filter(|param| param.info().is_modulatable());
     let all = || "a parameter that routes can move; ‘sprung params’ marks them".to_owned();
-    Ok(Route {
+    let route = Route {
         source: source("source")?.ok_or_else(|| format!("{at}: there is no ‘source’: expected {}", sources()))?,
         destination: named(route, at, "to", movable, all)?
             .ok_or_else(|| format!("{at}: there is no ‘to’: expected {}", all()))?,
         response: named(route, at, "response", Response::from_id, responses)?.unwrap_or(Response::Linear),
         scale: source("scale")?,
-    })
+    };
+    if route.is_possible() {
+        Ok(route)
+    } else {
+        let to = route.destination.info().id;
+        Err(format!("{at}: all notes share ‘{to}’, so an oscillator, an envelope or a release cannot move it for one"))
+    }
 }
 
 /// Looks up the text at `key` of a route with `find`; none if the key is missing.

@@ -5,6 +5,7 @@ use crate::in_blocks::in_blocks;
 use crate::workers::Backwards;
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
 use sprung::params::{PARAMS, Param};
+use sprung::patch::routes::{Routes, Source};
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::sound::{Kit, Pad, Sound};
 use std::sync::Arc;
@@ -15,8 +16,11 @@ const PLATE: f32 = 1.0;
 const SPRING: f32 = 2.0;
 const ROOM: f32 = 3.0;
 
+const GUITAR: f32 = 2.0;
+const VOICE: f32 = 4.0;
+
 /// The parameter sections of the effects behind the voices.
-const SECTIONS: [&str; 5] = ["Strings", "Tremolo", "Drive", "Tone", "Space"];
+const SECTIONS: [&str; 6] = ["Soundbox", "Strings", "Tremolo", "Drive", "Tone", "Space"];
 
 /// Three short modes, panned to both sides.
 fn dry() -> Patch {
@@ -29,6 +33,8 @@ fn dry() -> Patch {
 /// All sections on, with a body.
 fn wet(space: f32) -> Patch {
     dry()
+        .with(Param::Soundbox, GUITAR)
+        .with(Param::SoundboxMix, 60.0)
         .with(Param::StringsLevel, 40.0)
         .with(Param::StringsLowDecay, 0.3)
         .with(Param::StringsHighDecay, 0.1)
@@ -143,13 +149,14 @@ fn what_is_off_changes_no_bit_and_what_is_on_changes_some() {
     let mut settings = dry();
     // Changes every parameter of the sections except those that switch an effect on.
     for info in PARAMS.iter().filter(|info| SECTIONS.contains(&info.section)) {
-        use Param::{Drive, Space, StereoWidth, StringsLevel, ToneHigh, ToneLow, TremoloDepth};
-        if ![Drive, Space, StereoWidth, StringsLevel, ToneHigh, ToneLow, TremoloDepth].contains(&info.param) {
+        use Param::{Drive, Soundbox, Space, StereoWidth, StringsLevel, ToneHigh, ToneLow, TremoloDepth};
+        if ![Drive, Soundbox, Space, StereoWidth, StringsLevel, ToneHigh, ToneLow, TremoloDepth].contains(&info.param) {
             settings.set(info.param, info.denormalise(0.8));
         }
     }
     assert!(plain == synth_bits(&settings, &notes, 9000, 512).0);
     for (param, value) in [
+        (Param::Soundbox, VOICE),
         (Param::StringsLevel, 50.0),
         (Param::TremoloDepth, 50.0),
         (Param::Drive, 6.0),
@@ -189,6 +196,7 @@ fn tails_are_never_longer_than_told() {
     let patches = [
         ("all", wet(SPRING)),
         ("plate", dry().with(Param::Space, PLATE).with(Param::SpaceLowDecay, 0.3).with(Param::SpaceHighDecay, 0.2)),
+        ("soundbox", dry().with(Param::Soundbox, GUITAR).with(Param::SoundboxSize, 400.0)),
         ("strings", strings),
         ("effects", effects),
         ("width", dry().with(Param::StereoWidth, 0.0)),
@@ -229,6 +237,10 @@ fn nothing_clicks() {
     };
     let note = on(0, 45);
     for (param, from, to) in [
+        (Param::Soundbox, 0.0, VOICE),
+        (Param::Soundbox, GUITAR, 0.0),
+        (Param::Soundbox, GUITAR, VOICE),
+        (Param::SoundboxMix, 60.0, 10.0),
         (Param::StringsLevel, 40.0, 0.0),
         (Param::StringsTuning, 0.0, 1.0),
         (Param::StringsTune, 0.0, 7.0),
@@ -312,4 +324,54 @@ fn without_room_bodies_stay_off() {
     let mut roomy = Ensemble::new(RATE, 1, &dry(), &[]);
     roomy.reserve_space();
     assert!(bits(&mut roomy, &[turned[0], turned[1], note]) != plain);
+}
+
+/// Routes move effects for all notes: by macros, controllers, and the strike of the newest note.
+#[test]
+fn routes_move_effects() {
+    let routed = |source| {
+        let patch = Patch { routes: Routes::NONE, ..dry() }.with(Param::ToneHigh, -18.0);
+        patch.with_route(0, source, Param::ToneHigh, 100.0)
+    };
+    let notes = [on(0, 60), on(4000, 64)];
+    let plain = |high: f32| {
+        synth_bits(&Patch { routes: Routes::NONE, ..dry() }.with(Param::ToneHigh, high), &notes, 9000, 512).0
+    };
+    let macro_up = [set(0, Param::Macro1, 50.0), notes[0], notes[1]];
+    assert!(synth_bits(&routed(Source::Macro1), &macro_up, 9000, 512).0 == plain(0.0));
+    let wheel_up = [event(0, EventKind::Control { controller: 1, value: 1.0 }), notes[0], notes[1]];
+    assert!(synth_bits(&routed(Source::Wheel), &wheel_up, 9000, 512).0 == plain(18.0));
+    assert!(synth_bits(&routed(Source::Wheel), &notes, 9000, 512).0 == plain(-18.0));
+    // Moved while they sound, with the strikes of new notes, in blocks of any size.
+    let moved = [
+        notes[0],
+        set(1000, Param::Macro1, 70.0),
+        event(1777, EventKind::Control { controller: 1, value: 0.7 }),
+        notes[1],
+        set(5003, Param::ToneHigh, 3.0),
+    ];
+    for source in [Source::Macro1, Source::Wheel, Source::Velocity, Source::Key, Source::Random] {
+        let patch = routed(source).with(Param::Soundbox, VOICE).with_route(1, source, Param::SoundboxVowel, 60.0);
+        let whole = synth_bits(&patch, &moved, 9000, 9000);
+        for block in [37, 512] {
+            assert!(synth_bits(&patch, &moved, 9000, block) == whole, "{source:?}, blocks of {block}");
+        }
+    }
+    // What is of one note's time cannot move what all notes share.
+    for source in [Source::Lfo1, Source::Envelope2, Source::ReleaseVelocity] {
+        assert!(routed(source).routes.get(0).is_none(), "{source:?}");
+    }
+    // A kit without such routes has its own values again.
+    let mut synth = Synth::new(RATE, 1);
+    synth.set_patch(&routed(Source::Macro1));
+    let bits = |synth: &mut Synth, events: &[Event]| {
+        in_blocks(events, 30_000, 512, |events, l, r| synth.process(events, l, r))
+    };
+    bits(&mut synth, &[set(0, Param::Macro1, 50.0), on(0, 60), off(100, 60)]);
+    assert!(synth.is_silent());
+    synth.set_patch(&dry());
+    let mut other = Synth::new(RATE, 1);
+    other.set_patch(&dry());
+    bits(&mut other, &[on(0, 60), off(100, 60)]);
+    assert!(bits(&mut synth, &[on(0, 60)]) == bits(&mut other, &[on(0, 60)]));
 }

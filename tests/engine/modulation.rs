@@ -352,6 +352,13 @@ fn busy(form: usize) -> Patch {
         (Bloom, if form == 0 { 60.0 } else { 0.0 }),
         (Touch, if form == 1 { 40.0 } else { 0.0 }),
         (Unison, 3.0),
+        (Soundbox, if form == 0 { 4.0 } else { 0.0 }),
+        (SoundboxMix, 60.0),
+        (StringsLevel, if form == 0 { 30.0 } else { 0.0 }),
+        (TremoloDepth, 30.0),
+        (TremoloStereo, 50.0),
+        (Space, if form == 1 { 3.0 } else { 0.0 }),
+        (SpacePreDelay, 0.1),
     ] {
         patch.set(param, value);
     }

@@ -36,8 +36,9 @@ pub(crate) const MOVERS: [Lamp; 6] = [
 ];
 
 /// What touches the body, and what its sound passes through.
-const OTHERS: [Lamp; 5] = [
+const OTHERS: [Lamp; 6] = [
     lamp("Rattle", Param::Rattle, 1.0, "Something loose lies on it or hangs at it, and strikes back."),
+    lamp("Soundbox", Param::Soundbox, 1.0, "A second body, whose resonances all notes pass."),
     lamp("Strings", Param::StringsLevel, 30.0, "Strings that ring along."),
     lamp("Tremolo", Param::TremoloDepth, 50.0, "A motor takes the loudness down and up again."),
     lamp("Drive", Param::Drive, 6.0, "Lifts what is soft and holds what is loud."),

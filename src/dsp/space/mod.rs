@@ -3,6 +3,7 @@
 //! | processor | what it does |
 //! |---|---|
 //! | [`ModalReverb`] | a resonant body whose modes are masses that every sample drives: a [`Plate`], a [`Spring`] tank, a [`Room`], sympathetic [`Strings`] |
+//! | [`Soundbox`] | a body with a few fixed resonances, through which all sound passes |
 //! | [`Tremolo`] | the tremolo of a vibraphone's motor |
 //! | [`Overdrive`] | soft clipping |
 //! | [`Tone`] | low and high shelving filters |
@@ -67,6 +68,7 @@ mod pre_delay;
 mod resonator;
 mod reverb;
 mod room;
+mod soundbox;
 mod spring;
 mod strings;
 mod ticks;
@@ -82,6 +84,7 @@ pub use plate::Plate;
 pub use resonator::Resonator;
 pub use reverb::{LONGEST_PRE_DELAY, ModalReverb};
 pub use room::Room;
+pub use soundbox::{BoxBody, Resonance, Soundbox};
 pub use spring::Spring;
 pub use strings::Strings;
 pub use tone::Tone;

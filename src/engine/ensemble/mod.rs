@@ -10,7 +10,6 @@ mod shared_space;
 mod stems;
 
 use super::note::nearest_channel;
-use super::space::needs_bodies;
 use super::synth::allowed;
 use super::zones::Owners;
 use super::{Snapshot, Synth, VoiceState};
@@ -87,8 +86,9 @@ impl Ensemble {
             stems: None,
         };
         ensemble.reserve(largest);
-        if ensemble.programs.iter().any(|kit| needs_bodies(kit.values())) {
-            ensemble.reserve_space();
+        let Self { parts, programs, .. } = &mut ensemble;
+        for kit in programs.iter() {
+            parts.iter_mut().for_each(|part| part.synth.make_room_for(kit));
         }
         (0..16).fold(ensemble, |ensemble, channel| ensemble.with_kit(channel, kit))
     }

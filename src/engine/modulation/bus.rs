@@ -142,6 +142,11 @@ impl Bus {
         self.destinations().iter().any(|destination| destination.param == param)
     }
 
+    /// Whether any route moves an effect behind the voices.
+    pub(crate) fn leads_behind(&self) -> bool {
+        self.destinations().iter().any(|destination| destination.target == Target::Behind)
+    }
+
     /// The destinations of the routes; offsets are in this order.
     pub(crate) fn destinations(&self) -> &[Destination] {
         &self.destinations[..self.destinations_len]

@@ -23,6 +23,8 @@ pub(crate) enum Target {
     Strike,
     /// Used by sounding voices at each control tick.
     Control,
+    /// Used by the effects behind the voices.
+    Behind,
     /// The rate of an oscillator, by index.
     Lfo(u8),
 }
@@ -40,6 +42,7 @@ impl Destination {
             (Param::Lfo1Rate, _) => Target::Lfo(0),
             (Param::Lfo2Rate, _) => Target::Lfo(1),
             (Param::Lfo3Rate, _) => Target::Lfo(2),
+            (_, Change::AtOnce) => Target::Behind,
             (_, Change::Smoothed(_)) if Mover::of(param).is_none() => Target::Control,
             _ => Target::Strike,
         };

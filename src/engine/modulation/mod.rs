@@ -11,6 +11,7 @@
 //! a strike uses are modulated at the strike. A voice keeps the routes that it was started with, and follows the
 //! settings of the instrument only as long as the instrument has the voice's patch.
 //!
+//! - Routes to the effects behind the voices are evaluated once for all notes (`behind`).
 //! - Values that all voices share are computed once per tick. A shared oscillator is copied into each voice that
 //!   follows it, so that a voice that outlives its patch can continue alone.
 //! - Oscillators and envelopes store their present and their next state, so that a tick without events computes nothing
@@ -26,6 +27,7 @@
 //! same voices without them (AVX2 and AVX-512). Tests: `tests/engine/modulation.rs` has every source and every kind of
 //! destination; `tests/levels/`, `tests/engine/blocks.rs` and `tests/engine/storm/` use random routes.
 
+mod behind;
 mod bus;
 mod destination;
 mod envelope;
@@ -38,6 +40,7 @@ mod settings;
 
 use crate::params::NoteValue;
 
+pub(crate) use behind::Behind;
 pub(crate) use bus::Bus;
 #[cfg(feature = "fit")]
 pub(crate) use lfo::Lfo;

@@ -24,6 +24,20 @@ pub(crate) struct Positions {
     pub(crate) expression: f32,
 }
 
+impl Positions {
+    /// The sources that they are.
+    pub(super) fn sources(&self) -> [(Source, f32); 6] {
+        [
+            (Source::Pressure, self.pressure),
+            (Source::Timbre, self.timbre),
+            (Source::Bend, self.bend),
+            (Source::Wheel, self.wheel),
+            (Source::Breath, self.breath),
+            (Source::Expression, self.expression),
+        ]
+    }
+}
+
 /// Values that are set at a strike and stay until the next one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Struck {
@@ -33,6 +47,24 @@ pub(crate) struct Struck {
     pub(crate) seed: u64,
     /// Number of the note: each new note has the next one.
     pub(crate) serial: u64,
+}
+
+impl Struck {
+    /// The stream of random numbers of the strike.
+    fn stream(&self) -> u64 {
+        random::key(self.seed ^ STRIKE_STREAM, self.serial)
+    }
+
+    /// The sources that a strike sets.
+    pub(super) fn sources(&self) -> [(Source, f32); 5] {
+        [
+            (Source::Velocity, self.velocity),
+            (Source::ReleaseVelocity, 0.0),
+            (Source::Key, Source::key_at(self.pitch)),
+            (Source::Random, random::uniform(self.stream(), 0)),
+            (Source::Alternation, if self.serial.is_multiple_of(2) { 1.0 } else { -1.0 }),
+        ]
+    }
 }
 
 /// The modulation of one voice. Real-time safe.
@@ -114,19 +146,11 @@ impl Modulators {
         value: impl Fn(Param) -> f32,
         first: bool,
     ) {
-        let stream = random::key(struck.seed ^ STRIKE_STREAM, struck.serial);
         (self.settings, self.unsettled) = (*settings, true);
-        let strike = [
-            (Source::Velocity, struck.velocity),
-            (Source::ReleaseVelocity, 0.0),
-            (Source::Key, Source::key_at(struck.pitch)),
-            (Source::Random, random::uniform(stream, 0)),
-            (Source::Alternation, if struck.serial.is_multiple_of(2) { 1.0 } else { -1.0 }),
-        ];
-        strike.into_iter().for_each(|(source, value)| self.set_source(source, value));
+        struck.sources().into_iter().for_each(|(source, value)| self.set_source(source, value));
         let phases = std::array::from_fn(|index| f64::from(value(of_lfo(Param::Lfo1Phase, index))) * 0.01);
         let is_shared = |index| Scope::from_value(value(of_lfo(Param::Lfo1Scope, index))) == Scope::Shared;
-        self.moving.strike(phases, std::array::from_fn(is_shared), first, stream);
+        self.moving.strike(phases, std::array::from_fn(is_shared), first, struck.stream());
         self.share(shared);
         if first {
             (self.rates, self.next_rates) = (settings.rates, settings.rates);
@@ -162,7 +186,9 @@ impl Modulators {
                 (Some(Mover::Macro(index)), _) => 100.0 * self.sources[Source::Macro1 as usize + usize::from(index)],
                 (None, Target::Strike) => destination.moved(base, self.struck_offsets[place]),
                 (None, Target::Lfo(index)) if self.settings.are_synchronised[usize::from(index)] => continue,
-                (None, Target::Control | Target::Lfo(_)) => destination.moved(base, self.offsets[place]),
+                (None, Target::Control | Target::Behind | Target::Lfo(_)) => {
+                    destination.moved(base, self.offsets[place])
+                }
             };
             tell(destination.param, value);
         }
@@ -230,7 +256,7 @@ impl Modulators {
             let destination = &self.bus.destinations()[place];
             let value = destination.moved(self.settings.bases[place], self.offsets[place]);
             match destination.target {
-                Target::Strike => {}
+                Target::Strike | Target::Behind => {}
                 Target::Control => set(destination.param, value),
                 Target::Lfo(index) if self.settings.are_synchronised[usize::from(index)] => {}
                 Target::Lfo(index) => self.next_rates[usize::from(index)] = f64::from(value),
@@ -255,14 +281,7 @@ impl Modulators {
     /// Returns a bit for each destination whose offset may have changed.
     fn look_ahead(&mut self, seconds: f64, positions: &Positions) -> u32 {
         self.positions = *positions;
-        for (source, value) in [
-            (Source::Pressure, positions.pressure),
-            (Source::Timbre, positions.timbre),
-            (Source::Bend, positions.bend),
-            (Source::Wheel, positions.wheel),
-            (Source::Breath, positions.breath),
-            (Source::Expression, positions.expression),
-        ] {
+        for (source, value) in positions.sources() {
             // A source that no route reads need not be written and compared.
             if self.bus.reads(source) {
                 self.set_source(source, value);
@@ -304,7 +323,7 @@ fn set_nth(sources: &mut Sources, changed: &mut u32, first: Source, nth: usize, 
 }
 
 /// Resets the macros to their values in the settings.
-fn set_macros(sources: &mut Sources, settings: &Settings) {
+pub(super) fn set_macros(sources: &mut Sources, settings: &Settings) {
     let macros = &mut sources[Source::Macro1 as usize..];
     macros.iter_mut().zip(settings.macros).for_each(|(source, value)| *source = value);
 }

@@ -1,10 +1,10 @@
-//! The effects after the voices of a synth: strings, tremolo, drive, tone, space and width, in series.
+//! The effects after the voices of a synth: soundbox, strings, tremolo, drive, tone, space and width, in series.
 //!
 //! A section that is off does not change the signal. A section that is on becomes idle when its content is below −120 dBFS and
 //! its input is silent. [`Space::skip`] then advances what has a clock, with the same result as silent input. So the output
 //! does not depend on the block size, nor on the frame at which the silence is detected.
 //!
-//! Room for bodies is made outside the audio thread, 4 MB per synth, of which a plate at rest uses 1 MB: by
+//! Room for bodies is made outside the audio thread, 4 MB per synth, of which a plate at rest uses 1 MB (20 KB for a soundbox): by
 //! `Synth::reserve_space`, or when a kit with a body is set. Without room, bodies stay off. An ensemble makes room for each channel that starts with a body, and for
 //! all channels if one of its programs has a body. Each channel has its own effects, so sixteen channels with a plate
 //! take the time of sixteen plates.
@@ -20,13 +20,17 @@ mod bodies;
 mod resonant;
 mod tail;
 
-use crate::dsp::space::{Overdrive, Tone, Tremolo, Width};
+use crate::dsp::space::{BoxBody, Overdrive, Soundbox, Tone, Tremolo, Width};
 use crate::params::{self, Param, Values};
+use crate::patch::routes::Route;
+use crate::sound::Kit;
 use resonant::Resonant;
 
 /// The effects after the voices. Real-time safe once made, except for [`Space::reserve`].
 pub(crate) struct Space {
     sample_rate: f64,
+    /// None until room for it is reserved.
+    soundbox: Option<Box<Soundbox>>,
     /// Strings and space; none until room for them is reserved.
     resonant: Option<Box<Resonant>>,
     tremolo: Tremolo,
@@ -39,8 +43,12 @@ pub(crate) struct Space {
     is_awake: bool,
 }
 
-/// Parameters of the sections, each after those that it needs. [`Param::Space`] also sets size, material and mix.
-const ALL: [Param; 16] = [
+/// Parameters of the sections, each after those that it needs. [`Param::Space`] also sets size, material and mix, and
+/// [`Param::Soundbox`] its mix.
+const ALL: [Param; 19] = [
+    Param::Soundbox,
+    Param::SoundboxSize,
+    Param::SoundboxVowel,
     Param::StringsTuning,
     Param::StringsTune,
     Param::StringsLowDecay,
@@ -69,6 +77,7 @@ impl Space {
     pub(crate) fn new(sample_rate: f64) -> Self {
         Self {
             sample_rate,
+            soundbox: None,
             resonant: None,
             tremolo: Tremolo::new(sample_rate),
             drive: Overdrive::new(sample_rate),
@@ -79,8 +88,26 @@ impl Space {
         }
     }
 
+    /// Makes room for what a kit has: a soundbox, strings and a space, from the start or when a route brings in the strings. Follow
+    /// with [`Space::set_all`]. Allocates if it makes room.
+    pub(crate) fn reserve_for(&mut self, kit: &Kit) {
+        let is_to_strings = |(_, route): (usize, Route)| route.destination == Param::StringsLevel;
+        let routes = kit.sounds().iter().map(|sound| &sound.patch().routes);
+        if needs_bodies(kit.values()) || routes.into_iter().any(|routes| routes.iter().any(is_to_strings)) {
+            self.reserve();
+        } else if kit.values().choice::<params::Soundbox>(Param::Soundbox) != params::Soundbox::None {
+            self.reserve_soundbox();
+        }
+    }
+
+    fn reserve_soundbox(&mut self) {
+        let Self { sample_rate, soundbox, .. } = self;
+        soundbox.get_or_insert_with(|| Box::new(Soundbox::new(*sample_rate)));
+    }
+
     /// Makes room for any body, if there is none. Follow with [`Space::set_all`]. Allocates.
     pub(crate) fn reserve(&mut self) {
+        self.reserve_soundbox();
         if self.resonant.is_none() {
             self.resonant = Some(Box::new(Resonant::new(self.sample_rate)));
         }
@@ -113,6 +140,11 @@ impl Space {
             Param::Drive => self.drive.set(number(param)),
             Param::ToneLow | Param::ToneHigh => self.tone.set(number(Param::ToneLow), number(Param::ToneHigh)),
             Param::StereoWidth => self.width.set(share(param)),
+            Param::Soundbox | Param::SoundboxSize | Param::SoundboxVowel | Param::SoundboxMix => {
+                if let Some(soundbox) = &mut self.soundbox {
+                    follow_soundbox(soundbox, param, values);
+                }
+            }
             _ => {
                 if let Some(resonant) = &mut self.resonant {
                     resonant.follow(param, values);
@@ -127,6 +159,9 @@ impl Space {
 
     /// Silences all sections and sets all smoothed values to their targets.
     pub(crate) fn reset(&mut self) {
+        if let Some(soundbox) = &mut self.soundbox {
+            soundbox.reset();
+        }
         if let Some(resonant) = &mut self.resonant {
             resonant.strings.reset();
             resonant.reverb.reset();
@@ -142,9 +177,12 @@ impl Space {
     fn look(&mut self) {
         let Self { tremolo, drive, tone, width, .. } = self;
         let (mut off, mut idle) = (true, true);
+        if let Some(soundbox) = &self.soundbox {
+            (off, idle) = (soundbox.is_off(), soundbox.is_idle());
+        }
         if let Some(Resonant { strings, reverb, .. }) = self.resonant.as_deref() {
-            off = strings.is_off() && reverb.is_off();
-            idle = strings.is_idle() && reverb.is_idle();
+            off &= strings.is_off() && reverb.is_off();
+            idle &= strings.is_idle() && reverb.is_idle();
         }
         self.is_on = !(off && tremolo.is_off() && drive.is_off() && tone.is_off() && width.is_off());
         self.is_awake =
@@ -165,6 +203,9 @@ impl Space {
     pub(crate) fn process(&mut self, left: &mut [f32], right: &mut [f32]) -> bool {
         if !self.is_on {
             return false;
+        }
+        if let Some(soundbox) = &mut self.soundbox {
+            soundbox.process(left, right);
         }
         if let Some(resonant) = &mut self.resonant {
             resonant.strings.process(left, right);
@@ -190,6 +231,31 @@ impl Space {
     }
 }
 
+fn follow_soundbox(soundbox: &mut Soundbox, param: Param, values: &Values) {
+    let share = |param| 0.01 * values.get(param);
+    match param {
+        Param::SoundboxSize => soundbox.set_size(share(param).into()),
+        Param::SoundboxVowel => soundbox.set_vowel(share(param)),
+        _ => {
+            let body = body(values.choice(Param::Soundbox));
+            body.into_iter().for_each(|body| soundbox.set_body(body));
+            soundbox.set_mix(body.map_or(0.0, |_| share(Param::SoundboxMix)));
+        }
+    }
+}
+
+/// The body of a soundbox.
+fn body(soundbox: params::Soundbox) -> Option<&'static BoxBody> {
+    match soundbox {
+        params::Soundbox::None => None,
+        params::Soundbox::Violin => Some(BoxBody::violin()),
+        params::Soundbox::Guitar => Some(BoxBody::guitar()),
+        params::Soundbox::Soundboard => Some(BoxBody::soundboard()),
+        params::Soundbox::Voice => Some(BoxBody::voice()),
+        params::Soundbox::Horn => Some(BoxBody::horn()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -198,7 +264,7 @@ mod tests {
     #[test]
     fn all_that_is_behind_voices_is_followed() {
         let rows: Vec<Param> = PARAMS.iter().map(|info| info.param).filter(|param| param.is_behind_voices()).collect();
-        let with_space = [Param::SpaceSize, Param::SpaceMaterial, Param::SpaceMix];
+        let with_space = [Param::SoundboxMix, Param::SpaceSize, Param::SpaceMaterial, Param::SpaceMix];
         let followed: Vec<Param> = ALL.into_iter().chain(with_space).collect();
         assert!(rows.len() == followed.len() && rows.iter().all(|param| followed.contains(param)), "{rows:?}");
     }

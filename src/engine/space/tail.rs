@@ -14,6 +14,9 @@ impl Space {
             return frames;
         }
         let mut tail = Tail { frames, peak };
+        if let Some(soundbox) = self.soundbox.as_ref().filter(|soundbox| !soundbox.is_off()) {
+            tail = Tail { frames: soundbox.tail_frames_after(frames, peak), peak: soundbox.peak_after(peak) };
+        }
         let resonant = self.resonant.as_deref();
         if let Some(resonant) = resonant {
             tail.through_body(&resonant.strings);

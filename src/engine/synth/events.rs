@@ -14,6 +14,7 @@ impl Synth {
         let channel = nearest_channel(event.channel);
         // A new tempo takes effect at the next regular control tick.
         self.needs_control |= !matches!(event.kind, EventKind::Tempo(_));
+        let was_silent = self.is_silent();
         match event.kind {
             EventKind::NoteOn { key, detune, velocity, id } => {
                 let detune = finite(detune).clamp(-128.0, 128.0);
@@ -46,8 +47,7 @@ impl Synth {
                 self.instruments.set(param, value, self.clock);
                 self.follow_param();
                 if param.is_behind_voices() {
-                    let at_once = self.is_silent();
-                    self.space.set(param, self.instruments.values(), at_once);
+                    self.space.set(param, self.instruments.values(), was_silent);
                 }
             }
             EventKind::Modulate { id: None, param, offset } => {
@@ -70,6 +70,7 @@ impl Synth {
             EventKind::Choke { group } => self.manager.choke(group),
             EventKind::Program(_) => {}
         }
+        self.move_effects(was_silent);
     }
 
     /// Presses a key. The channel and the synth complete the note.
@@ -112,6 +113,12 @@ impl Synth {
         }
         if self.manager.note_on(instrument, note) {
             instrument.last_pitch = Some(instrument.pitch(&note));
+            let was_on = self.behind.is_on();
+            self.behind.strike(&instrument.bus, &instrument.struck(&note));
+            self.newest = note;
+            if was_on && !self.behind.is_on() {
+                self.space.set_all(self.instruments.values(), false);
+            }
         }
         if let Some(pads) = &mut self.pads {
             let is_sounding = |serial| self.manager.sounding_voices().any(|(note, _)| note.serial == serial);

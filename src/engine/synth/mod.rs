@@ -10,8 +10,9 @@ mod pads;
 mod process;
 
 use super::controls::Controls;
+use super::modulation::Behind;
 use super::note::{EndedNote, Note, nearest_channel, nearest_key};
-use super::space::{Space, needs_bodies};
+use super::space::Space;
 use super::voice::SynthVoice;
 use super::voice_manager::{Footprint, PlayMode, Priority, VoiceManager, VoicePool};
 use super::{Snapshot, VoiceState};
@@ -61,6 +62,9 @@ pub struct Synth {
     channels: Channels,
     /// The effects after the voices.
     space: Space,
+    /// The routes that move them, and the note by whose strike and channel they do.
+    behind: Behind,
+    newest: Note,
     limiter: Limiter,
     /// Number of notes started so far.
     note_serial: u64,
@@ -98,6 +102,8 @@ impl Synth {
             instruments,
             channels: Channels::new(sample_rate),
             space: Space::new(sample_rate),
+            behind: Behind::NONE,
+            newest: Note::NONE,
             limiter: Limiter::new(sample_rate),
             note_serial: 0,
             leaves_out_notes: false,
@@ -138,6 +144,7 @@ impl Synth {
         self.manager.reset();
         self.limiter.reset();
         self.instruments.reset();
+        self.behind = Behind::NONE;
         self.space.set_all(self.instruments.values(), true);
         self.channels = Channels::new(self.instruments.sample_rate());
         (self.note_serial, self.clock, self.needs_control) = (0, 0, false);
@@ -173,11 +180,14 @@ impl Synth {
     /// that it is not freed here.
     pub fn set_kit(&mut self, kit: &Arc<Kit>) {
         self.instruments.set_kit(kit, self.clock);
-        if needs_bodies(kit.values()) {
-            self.space.reserve();
-        }
+        self.make_room_for(kit);
         self.configure_manager();
         self.follow_space();
+    }
+
+    /// Makes room for the effects of a kit that will be set. Allocates.
+    pub(super) fn make_room_for(&mut self, kit: &Kit) {
+        self.space.reserve_for(kit);
     }
 
     /// As [`Synth::set_kit`], with a kit made of one patch. Allocates and frees.
@@ -303,6 +313,23 @@ impl Synth {
     fn follow_space(&mut self) {
         let at_once = self.is_silent();
         self.space.set_all(self.instruments.values(), at_once);
+    }
+
+    /// Applies what routes make of the parameters of the effects.
+    fn move_effects(&mut self, at_once: bool) {
+        if !self.behind.is_on() {
+            return;
+        }
+        let Some(instrument) = self.instruments.of_note(&self.newest) else { return };
+        let positions = self.channels.wheels(self.newest.channel);
+        let positions = positions.positions(self.channels.brightness(self.newest.channel).into(), |_| true);
+        let mut moved = *self.instruments.values();
+        let value = |param: Param| match param.is_behind_voices() {
+            true => self.instruments.values().get(param),
+            false => instrument.knobs.modulated(param),
+        };
+        self.behind.each_value(&positions, value, |param, value| moved.set(param, value));
+        self.behind.params().for_each(|param| self.space.set(param, &moved, at_once));
     }
 
     /// Applies the parameters that belong to the voice manager.

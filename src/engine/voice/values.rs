@@ -4,7 +4,7 @@ use crate::dsp::cells::MAX_CELLS;
 use crate::dsp::mode_bank::MAX_MODES;
 use crate::dsp::series::powers;
 use crate::engine::instrument::Instrument;
-use crate::engine::modulation::{Modulators, Struck};
+use crate::engine::modulation::Modulators;
 use crate::engine::note::Note;
 use crate::params::Param;
 use crate::patch::{Mode, ModeTable};
@@ -13,8 +13,7 @@ use std::f64::consts::LOG2_10;
 
 /// Passes a strike to the modulators. `first` is true for the first strike of the voice.
 pub(super) fn strike_modulators(instrument: &Instrument, modulators: &mut Modulators, note: &Note, first: bool) {
-    let (pitch, seed, serial) = (instrument.pitch(note), instrument.seed, note.serial);
-    let struck = Struck { velocity: note.velocity, pitch, seed, serial };
+    let struck = instrument.struck(note);
     let Instrument { positions, settings, shared, knobs, .. } = instrument;
     modulators.strike(&struck, positions, settings, shared, |param| knobs.modulated(param), first);
 }

@@ -18,7 +18,7 @@ const PATH: [&[&[Part]]; 4] = [
     &[&[("Pitch", 1), ("Voices", 3), ("Tuning", 5)]],
     &[&[("Mallet", 0), ("Pluck", 0), ("Noise", 0)], &[("Bow", 0), ("Breath", 0), ("Input", 0)]],
     &[&[("Body", 1), ("Model", 4), ("Rattle", 1)]],
-    &[&[("Strings", 2), ("Tremolo", 2), ("Drive", 2)], &[("Tone", 2), ("Space", 2), ("Output", 2)]],
+    &[&[("Soundbox", 2), ("Strings", 2), ("Tremolo", 2)], &[("Drive", 2), ("Tone", 2), ("Space", 2)], &[("Output", 2)]],
 ];
 
 /// Width from which on the text is larger.

@@ -18,7 +18,7 @@ use sprung::preset::Guide;
 pub(super) const PAGES: [&[&str]; 4] = [
     &["Mallet", "Pluck", "Noise", "Bow", "Breath", "Input", "Strike"],
     &["Body", "Rattle", "Pitch"],
-    &["Strings", "Tremolo", "Drive", "Tone", "Space", "Output"],
+    &["Soundbox", "Strings", "Tremolo", "Drive", "Tone", "Space", "Output"],
     &["Voices", "Control"],
 ];
 /// How much of the brightness is left of a part that is off.
