@@ -234,16 +234,25 @@ impl Soundbox {
     }
 
     fn render(&mut self, left: &mut [f32], right: &mut [f32]) {
-        let (frames, mut drive) = (left.len(), Drive::NONE);
+        let (frames, mut drive, mut loudest) = (left.len(), Drive::NONE, self.input.to_bits());
         for ((left, right), force) in left.iter().zip(&*right).zip(&mut drive.push) {
             let input = held(0.5 * (left + right));
             *force = if input.abs() >= FAINTEST_INPUT { input } else { 0.0 };
-            self.input = self.input.max(force.abs());
+            // Magnitudes have the order of their bits, whose maximum is found in vectors.
+            loudest = loudest.max(force.abs().to_bits());
         }
+        self.input = f32::from_bits(loudest);
         let sum = self.bank.render(Some(&drive), frames);
+        let [dry, wet] = [self.dry.after(0), self.wet.after(0)];
+        let is_moving = self.dry.is_moving() || self.wet.is_moving();
         for (side, wet_side) in [left, right].into_iter().zip(sum) {
-            for (n, (sample, wet_sample)) in side.iter_mut().zip(wet_side).enumerate() {
-                *sample = *sample * self.dry.after(n) + wet_sample * self.wet.after(n);
+            let samples = side.iter_mut().zip(wet_side);
+            if is_moving {
+                for (n, (sample, wet)) in samples.enumerate() {
+                    *sample = *sample * self.dry.after(n) + wet * self.wet.after(n);
+                }
+            } else {
+                samples.for_each(|(sample, wet_sample)| *sample = *sample * dry + wet_sample * wet);
             }
         }
         self.dry.advance(frames);
