@@ -62,6 +62,13 @@ impl Bank {
         either!(self, bank => bank.load(modes));
     }
 
+    /// See [`ModeBank::set_colour`]. Does nothing with the original formulas, whose modes have no gains that move.
+    pub(crate) fn set_colour(&mut self, colour: [f32; MAX_MODES]) {
+        if let Self::Exact(bank) = self {
+            bank.set_colour(colour);
+        }
+    }
+
     /// See [`ModeBank::len`].
     pub(crate) fn len(&self) -> usize {
         either!(self, bank => bank.len())

@@ -158,6 +158,13 @@ impl Cells {
         }
     }
 
+    /// Like [`super::ModeBank::set_colour`], for the modes of a cell. Does nothing if there is no such cell.
+    pub(crate) fn set_colour(&mut self, cell: usize, colour: [f32; MAX_MODES]) {
+        if let Some(Some(cell)) = self.cells.get_mut(cell) {
+            cell.bank.set_colour(colour);
+        }
+    }
+
     /// Like [`super::ModeBank::nudge`]. Does nothing if there is no mode `m`.
     pub(crate) fn nudge(&mut self, m: usize, amplitude: f32) {
         if let Some(Some(cell)) = self.cells.get_mut(m / MAX_MODES) {

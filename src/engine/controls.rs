@@ -29,6 +29,8 @@ pub(crate) struct Controls {
     pub(crate) damper: f64,
     /// Exponent by which higher modes decay faster.
     pub(crate) decay_tilt: f64,
+    /// How much softer higher modes are heard, in decibels per octave.
+    pub(crate) colour: f64,
     /// Semitones by which a full strike raises the pitch.
     pub(crate) tension: f64,
     /// Share of its energy that a band passes on to higher modes, 0–1, and the time of this rise in seconds.
@@ -79,6 +81,7 @@ impl Controls {
             is_synchronised: sync != NoteValue::Off,
             damper: f64::from(value(Param::Damper)) * 0.01,
             decay_tilt: value(Param::DecayTilt).into(),
+            colour: value(Param::Colour).into(),
             tension: value(Param::Tension).into(),
             bloom: f64::from(value(Param::Bloom)) * 0.01,
             bloom_time: value(Param::BloomTime).into(),
@@ -115,6 +118,7 @@ impl Controls {
             Param::VibratoRate if !self.is_synchronised => self.vibrato_rate = wide,
             Param::Damper => self.damper = wide * 0.01,
             Param::DecayTilt => self.decay_tilt = wide,
+            Param::Colour => self.colour = wide,
             Param::Tension => self.tension = wide,
             Param::Bloom => self.bloom = wide * 0.01,
             Param::BloomTime => self.bloom_time = wide,

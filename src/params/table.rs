@@ -153,6 +153,8 @@ table! {
             "How higher modes decay faster: the T60 of a mode is divided by its ratio to this power.";
         Tilt "tilt" "Brightness", DecibelsPerOctave -24.0..24.0 = 0.0, Linear, NextNote,
             "Tilts the levels of the modes by their ratio.";
+        Colour "colour" "Colour", DecibelsPerOctave -24.0..0.0 = 0.0, Linear, Smoothed(20),
+            "How much softer higher modes are heard, while the note sounds: an envelope that opens it lets partials enter one by one.";
         Stretch "stretch" "Stretch", Number 0.5..2.0 = 1.0, Linear, NextNote,
             "Raises the ratios of the modes to this power: spreads or squeezes the spectrum.";
         Width "width" "Width", Percent 0.0..100.0 = 100.0, Linear, NextNote,

@@ -15,7 +15,7 @@ fn ids_are_pinned() {
         rattle rattle_gap rattle_mass rattle_rate rattle_hardness rattle_position \
         input_level \
         velocity vary_position vary_hardness vary_modes \
-        decay release damper note_off decay_tilt tilt stretch width coefficients \
+        decay release damper note_off decay_tilt tilt colour stretch width coefficients \
         tension bloom bloom_time touch touch_position \
         tune fine tuning key_track sweep sweep_time sweep_curve \
         vibrato vibrato_rate vibrato_delay vibrato_sync glide glide_when glide_by \

@@ -258,3 +258,30 @@ fn off_is_off() {
     }
     assert_eq!(render(&mass(1.0), &[on(0, 57)], 0.1), render(&mass(1.0), &[Event::note_on(0, 57, 1.0)], 0.1));
 }
+
+/// Colour is a gain for each mode, by its octaves above the fundamental. It moves in 20 ms without a click, and back to nothing.
+#[test]
+fn colour_softens_modes_by_their_octaves() {
+    const RATIOS: [f32; 4] = [0.5, 1.0, 2.0, 5.0];
+    let of = |ratios: &[f32]| {
+        let modes: Vec<Mode> = ratios.iter().map(|ratio| Mode { ratio: *ratio, ..Mode::UNIT }).collect();
+        Patch { modes: ModeTable::new(&modes), ..mass(8.0) }
+    };
+    let turned = [Event::note_on(0, 57, 1.0), set(24_001, Param::Colour, -9.0), set(48_000, Param::Colour, 0.0)];
+    let alone = RATIOS.map(|ratio| render(&of(&[ratio]), &turned[..1], 1.5));
+    let found = render(&of(&RATIOS), &turned, 1.5);
+    let sum = |n: usize, slope: f64| -> f64 {
+        let gain = |ratio: f32| libm::exp10(slope * libm::log2(ratio.into()) / 20.0).min(1.0);
+        RATIOS.iter().zip(&alone).map(|(ratio, sound)| gain(*ratio) * f64::from(sound[n])).sum()
+    };
+    for (stretch, slope) in [(0..24_001, 0.0), (25_100..48_000, -9.0), (49_100..72_000, 0.0)] {
+        for n in stretch {
+            let error = f64::from(found[n]) - sum(n, slope);
+            assert!(error.abs() < 1e-4, "frame {n}, {slope} dB per octave: {error}");
+        }
+    }
+    let step = |stretch: std::ops::Range<usize>| {
+        found[stretch].windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max)
+    };
+    assert!(step(24_000..26_000) <= 1.01 * step(20_000..24_000) && step(48_000..50_000) <= 1.05 * step(50_000..54_000));
+}

@@ -40,6 +40,10 @@ pub struct ModeBank {
     /// Output gains without the fade at the top of the spectrum, left and right, and whether any of them is not 1.
     gains: [Row; 2],
     stereo: bool,
+    /// Factors of these gains, 0–1, whether there are any, and whether they are new since the last ramp.
+    colour: Row,
+    is_coloured: bool,
+    recoloured: bool,
     /// Whether noise acts on `x` of any mode.
     turned_noise: bool,
     /// Whether some modes are so high that their gains are reduced.
@@ -98,6 +102,9 @@ impl ModeBank {
             live: 0,
             gains: [Row::ONE; 2],
             stereo: false,
+            colour: Row::ONE,
+            is_coloured: false,
+            recoloured: false,
             turned_noise: false,
             faded: false,
             ratio: 1.0,
@@ -129,6 +136,7 @@ impl ModeBank {
         self.len = modes.len.min(MAX_MODES);
         self.stereo = modes.left[..self.len].iter().chain(&modes.right[..self.len]).any(|gain| *gain != 1.0);
         (self.turned_noise, self.faded) = (false, false);
+        (self.is_coloured, self.recoloured) = (false, false);
         for m in 0..self.len {
             self.half_angle[m] = 0.5 * angle_from_frequency(modes.frequency[m], self.sample_rate);
             self.ln_radius[m] = ln_radius(modes.t60[m], self.sample_rate);
@@ -263,6 +271,11 @@ impl ModeBank {
         self.transposed = true;
     }
 
+    /// Sets factors of the output gains, 0–1, one for each mode. The gains move with the next ramp or jump, which must follow.
+    pub(crate) fn set_colour(&mut self, colour: [f32; MAX_MODES]) {
+        (self.colour, self.is_coloured, self.recoloured) = (Row(colour), true, true);
+    }
+
     /// Whether other frequencies wait for the next ramp.
     pub(crate) fn is_transposed(&self) -> bool {
         self.transposed
@@ -290,7 +303,7 @@ impl ModeBank {
         if !self.aimed {
             self.jump_to(self.ratio);
         }
-        let same = ratio == self.ratio && !self.retuned && !self.damped;
+        let same = ratio == self.ratio && !self.retuned && !self.damped && !self.recoloured;
         match self.motion {
             Motion::Still { ticks } if same => {
                 (self.motion, self.until_tick) = (Motion::Still { ticks: ticks + 1 }, frames);
@@ -325,7 +338,9 @@ impl ModeBank {
     fn aim(&mut self, frames: Option<usize>, [passed, left]: [usize; 2], lost: Option<ChordLoss>) {
         let fades = self.tuning.fades(self.ratio);
         let faded = std::mem::replace(&mut self.faded, fades);
-        let moved = matches!(self.motion, Motion::Line { gains: true, .. });
+        let moved = matches!(self.motion, Motion::Line { gains: true, .. }) || std::mem::take(&mut self.recoloured);
+        let coloured = |side: &Row| Row(std::array::from_fn(|m| side.0[m] * self.colour.0[m]));
+        let full = if self.is_coloured { &self.gains.each_ref().map(coloured) } else { &self.gains };
         let gains = self.instructions.run(Aim {
             tuning: &mut self.tuning,
             modes: &mut self.modes,
@@ -336,7 +351,7 @@ impl ModeBank {
             lost,
             damped: std::mem::take(&mut self.damped),
             per_frame: frames.map(|frames| 1.0 / frames as f32),
-            fade: (fades || faded || moved).then_some(&self.gains),
+            fade: (fades || faded || moved).then_some(full),
             live: self.live,
             len: self.len,
         });
@@ -373,7 +388,7 @@ impl ModeBank {
             Motion::Still { .. } | Motion::Tabled { .. } => Moving::Nothing,
         };
         let line = if let Motion::Line { frames, .. } = self.motion { frames } else { 0 };
-        let stereo = self.stereo || self.faded || moving == Moving::PitchAndGain;
+        let stereo = self.stereo || self.faded || self.is_coloured || moving == Moving::PitchAndGain;
         let turned_noise = self.turned_noise;
         Form { moving, driven, turned_noise, stereo, live: self.live, frames, line, passed: self.passed() }
     }
