@@ -64,6 +64,8 @@ pub(super) struct Interaction {
     pub(super) said: Option<String>,
     /// The knob under a source that is being dragged, in this pass.
     pub(super) aim: Option<&'static ParamInfo>,
+    /// Whether the wheel has scrolled a page since the pointer moved last.
+    pub(super) is_scrolling: bool,
     /// The place over which it is held, to show what is behind it, and since when.
     pub(super) dwell: Option<(Rect, f64)>,
     /// The values that parts had when they were switched off, by sound and section.

@@ -30,7 +30,7 @@ use crate::editor::theme::layout::Layout;
 use crate::editor::theme::{Theme, install_fonts};
 use crate::params::SprungParams;
 use crate::state::State;
-use egui::{Key, Ui};
+use egui::{Event, Key, Ui};
 pub(super) use header::Face;
 use header::{Header, Request};
 use meter::Meter;
@@ -178,6 +178,8 @@ impl Window {
         if let Some(newest) = notes.first() {
             self.shown.follow(newest.key);
         }
+        let has_moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO);
+        self.interaction.is_scrolling &= !has_moved;
         let mut hint = None;
         let name = params.name();
         let mut controls = Controls {
@@ -288,6 +290,9 @@ impl Window {
         let learnt = bound.or_else(|| learn::follow(ui, &mut controls));
         let learnt = learnt.or_else(|| carry::follow(ui, self.shown.guide(), &mut controls));
         let learnt = learnt.or_else(|| controls.interaction.said.take());
+        // Knobs have taken the wheel that was theirs.
+        let is_wheel = |event: &Event| matches!(event, Event::MouseWheel { .. });
+        controls.interaction.is_scrolling |= ui.input(|input| input.events.iter().any(is_wheel));
         // What is dragged may have gone with its page.
         if !ui.input(|input| input.pointer.any_down()) {
             controls.release();
