@@ -21,6 +21,9 @@ use std::time::Duration;
 /// Time between two repaints while something moves.
 pub(super) const FRAME: Duration = Duration::from_millis(16);
 
+/// What the window says of what was done, or why it could not be done.
+pub(super) type Said = Result<String, String>;
+
 /// Text that is being typed instead of a parameter's value.
 pub(super) struct Typing {
     pub(super) index: usize,
@@ -61,7 +64,7 @@ pub(super) struct Interaction {
     /// The parameter that the user has moved last, until somebody has looked.
     pub(super) touched: Option<usize>,
     /// A message about what the user has done in this pass.
-    pub(super) said: Option<String>,
+    pub(super) said: Option<Said>,
     /// The knob under a source that is being dragged, in this pass.
     pub(super) aim: Option<&'static ParamInfo>,
     /// Whether the wheel has scrolled a page since the pointer moved last.

@@ -3,7 +3,7 @@
 pub(super) mod fitting;
 mod recordings;
 
-use crate::editor::controls::Controls;
+use crate::editor::controls::{Controls, Said};
 use crate::editor::pages::tuning;
 use crate::files;
 use egui::Ui;
@@ -25,14 +25,14 @@ pub(super) fn is_recording(path: &Path) -> bool {
 }
 
 /// Handles a dropped file that is not a recording. Returns a message.
-pub(super) fn take(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
+pub(super) fn take(path: &Path, library: Option<&Library>, controls: &mut Controls) -> Said {
     match ending(path).as_str() {
         "scl" | "kbm" => tuning::take(path, controls),
         "toml" => sound(path, library, controls),
-        _ => format!(
+        _ => Err(format!(
             "{}: expected a recording (.wav, .flac …), a preset or kit (.toml), a scale (.scl) or a keyboard mapping (.kbm)",
             path.display()
-        ),
+        )),
     }
 }
 
@@ -44,7 +44,7 @@ fn is_own(path: &Path, library: &Library) -> bool {
 }
 
 /// Loads a preset or kit. One from elsewhere is copied to the user's folder, if there is one.
-fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
+fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> Said {
     let read = files::read(path);
     let imported = read.and_then(|sound| match library.filter(|library| !is_own(path, library)) {
         Some(library) => {
@@ -54,11 +54,7 @@ fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> Str
         }
         None => Ok((sound, format!("loaded {}", path.display()))),
     });
-    match imported {
-        Ok((sound, message)) => {
-            controls.history.load(sound, controls.params, controls.host);
-            message
-        }
-        Err(error) => error.to_string(),
-    }
+    let (sound, message) = imported.map_err(|error| error.to_string())?;
+    controls.history.load(sound, controls.params, controls.host);
+    Ok(message)
 }

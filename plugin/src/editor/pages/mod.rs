@@ -9,8 +9,8 @@ pub(super) mod tuning;
 mod voices;
 
 use crate::editor::body::page::BodyPage;
-use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
+use crate::editor::controls::{Controls, Said};
 use crate::editor::lamps;
 use crate::editor::theme::GAP;
 use crate::editor::theme::layout::Layout;
@@ -36,7 +36,7 @@ const SECTIONS: f32 = 344.0;
 pub(super) enum Request {
     Manual,
     /// Show this message.
-    Say(String),
+    Say(Said),
 }
 
 /// The state of the pages.
@@ -90,7 +90,7 @@ impl Pages {
         let request = self.path(ui, layout.path, is_preset, controls);
         let (rect, (part, page)) = (layout.sections, self.part);
         let said = match part {
-            "Model" => self.body.show(ui, rect, shown, controls),
+            "Model" => self.body.show(ui, rect, shown, controls).map(Err),
             "Devices" => {
                 devices::show(ui, rect, controls);
                 None

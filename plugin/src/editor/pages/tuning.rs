@@ -2,7 +2,7 @@
 
 use crate::editor::controls::gestures::load;
 use crate::editor::controls::shown::Shown;
-use crate::editor::controls::{Controls, Hint};
+use crate::editor::controls::{Controls, Hint, Said};
 use crate::editor::keyboard::grid::{Cell, KeyGrid};
 use crate::editor::theme::{GAP, PADDING, SMALL, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
@@ -39,7 +39,7 @@ impl TuningPage {
         shown: &Shown,
         down: u128,
         controls: &mut Controls,
-    ) -> Option<String> {
+    ) -> Option<Said> {
         let palette = controls.palette;
         palette.paint_panel(ui.painter(), rect);
         let inner = rect.shrink(PADDING);
@@ -63,7 +63,7 @@ impl TuningPage {
         let equal = bottom.with_min_x(field.right() + 4.0);
         if button(ui, equal, "Equal", "Tune to equal temperament", look, palette).clicked() {
             set(None, "equal temperament", controls);
-            message = Some("tuned to equal temperament".to_owned());
+            message = Some(Ok("tuned to equal temperament".to_owned()));
         }
         let help = Rect::from_min_max(second.left_bottom() + vec2(0.0, 6.0), pos2(side.right(), field.top() - 4.0));
         if help.height() > 40.0 {
@@ -107,7 +107,7 @@ fn about(own: &OwnTuning) -> (String, String) {
 }
 
 /// Tunes the sound by a scale or mapping file. Returns a message.
-pub(crate) fn take(path: &Path, controls: &mut Controls) -> String {
+pub(crate) fn take(path: &Path, controls: &mut Controls) -> Said {
     let read = || -> sprung::Result<String> {
         let mut text = String::new();
         let name = path.display().to_string();
@@ -119,16 +119,13 @@ pub(crate) fn take(path: &Path, controls: &mut Controls) -> String {
         }
         Ok(text)
     };
-    let failed = |error: String| format!("{}: {error}", path.display());
+    let failed = |error: String| Err(format!("{}: {error}", path.display()));
     let is_map = match path.extension().and_then(|ending| ending.to_str()) {
         Some(ending) if ending.eq_ignore_ascii_case("scl") => false,
         Some(ending) if ending.eq_ignore_ascii_case("kbm") => true,
         _ => return failed("expected the whole path of a .scl or .kbm file".to_owned()),
     };
-    let text = match read() {
-        Ok(text) => text,
-        Err(error) => return error.to_string(),
-    };
+    let text = read().map_err(|error| error.to_string())?;
     let state = controls.params.state();
     let mut playable = state.playable;
     let before = playable.presets_mut().into_iter().find_map(|preset| preset.tuning.clone());
@@ -142,7 +139,7 @@ pub(crate) fn take(path: &Path, controls: &mut Controls) -> String {
         Ok(own) => {
             let name = about(&own).0;
             set(Some(own), &format!("tuning {name}"), controls);
-            format!("tuned to {name}")
+            Ok(format!("tuned to {name}"))
         }
         Err(error) => failed(error.to_string()),
     }

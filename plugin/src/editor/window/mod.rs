@@ -11,7 +11,7 @@ use crate::editor::binding;
 use crate::editor::browser::Browser;
 use crate::editor::controls::history::History;
 use crate::editor::controls::shown::Shown;
-use crate::editor::controls::{Controls, FRAME, Interaction};
+use crate::editor::controls::{Controls, FRAME, Interaction, Said};
 use crate::editor::displays::Displays;
 use crate::editor::drops;
 use crate::editor::drops::fitting::Fitting;
@@ -90,7 +90,7 @@ pub(super) struct Window {
     loads: u64,
     /// The theme that was last applied to egui's own widgets.
     applied: Option<Theme>,
-    message: String,
+    message: Said,
     line: StatusLine,
 }
 
@@ -131,7 +131,7 @@ impl Window {
             now: 0.0,
             loads,
             applied: None,
-            message: String::new(),
+            message: Ok(String::new()),
             line: StatusLine::default(),
         }
     }
@@ -145,7 +145,7 @@ impl Window {
     pub(super) fn open(&mut self, host: GuiContext) {
         self.host = Some(host);
         let read = self.params.read_controllers(self.browser.library());
-        self.message = read.err().map_or_else(String::new, |error| error.to_string());
+        self.message = read.map(|()| String::new()).map_err(|error| error.to_string());
         self.applied = None;
     }
 
@@ -227,6 +227,7 @@ impl Window {
                 if let Some((message, is_done)) = self.browser.show(ui, layout.page(), &mut controls) {
                     self.message = message;
                     self.over = self.over.filter(|_| !is_done);
+                    self.shown.read_again(&params);
                 }
             }
             Some(Over::Manual) => {
@@ -236,7 +237,7 @@ impl Window {
             }
             None if self.face == Face::Play => {
                 if let Some(message) = self.play.show(ui, layout.page(), &self.shown, &energies, &mut controls) {
-                    self.message = message;
+                    self.message = Err(message);
                 }
             }
             None if self.face == Face::Motion => {
@@ -297,13 +298,13 @@ impl Window {
         if !ui.input(|input| input.pointer.any_down()) {
             controls.release();
         }
-        if let Some(messages) = learnt.or_else(|| params.link().take_messages()).or(played) {
+        if let Some(messages) = learnt.or_else(|| params.link().take_messages().map(Err)).or(played.map(Ok)) {
             self.message = messages;
         }
         let complaint = controls.interaction.typing.as_ref().and_then(|typing| typing.complaint.clone());
-        let complaints = || status::summary(&params.complaints()).unwrap_or_default();
-        let message = if self.message.is_empty() { complaints() } else { self.message.clone() };
-        let message = complaint.unwrap_or(message);
+        let is_quiet = self.message.as_ref().is_ok_and(String::is_empty);
+        let complaints = || status::summary(&params.complaints()).filter(|_| is_quiet);
+        let message = complaint.or_else(complaints).map_or_else(|| self.message.clone(), Err);
         let sample_rate = params.link().sample_rate();
         let load = self.load.share(now, telemetry, sample_rate);
         let engine = status::engine(voices, load, sample_rate);
@@ -321,7 +322,7 @@ impl Window {
         if std::mem::replace(&mut self.loads, loads) != loads {
             (self.history, self.other, self.is_b) = (History::default(), None, false);
             self.interaction.switched_off.clear();
-            self.message.clear();
+            self.message = Ok(String::new());
         }
     }
 }
