@@ -9,7 +9,7 @@ pub(super) mod tuning;
 mod voices;
 
 use crate::editor::body::page::BodyPage;
-use crate::editor::controls::shown::Shown;
+use crate::editor::controls::shown::{Shown, Subject};
 use crate::editor::controls::{Controls, Said};
 use crate::editor::lamps;
 use crate::editor::theme::GAP;
@@ -21,6 +21,7 @@ use nice_plug_core::context::PluginApi;
 use path::Part;
 use sections::PAGES;
 use sprung::params::PARAMS;
+use sprung_picture::{Figure, small_figure};
 use tuning::TuningPage;
 
 /// The manual's page for each page, in their order.
@@ -46,12 +47,14 @@ pub(super) struct Pages {
     is_new: bool,
     body: BodyPage,
     tuning: TuningPage,
+    /// The picture of the body, read again only when another sound is shown.
+    figure: Option<(Subject, Figure)>,
 }
 
 impl Default for Pages {
     fn default() -> Self {
         let (body, tuning) = (BodyPage::default(), TuningPage::default());
-        Self { part: ("Mallet", 0), is_new: false, body, tuning }
+        Self { part: ("Mallet", 0), is_new: false, body, tuning, figure: None }
     }
 }
 
@@ -102,7 +105,10 @@ impl Pages {
                     left = rect.with_max_x(rect.left() + SECTIONS);
                     voices::show(ui.painter(), rect.with_min_x(left.right() + GAP), voices, controls);
                 }
-                let about = (shown.patch(), shown.guide(), is_preset);
+                let of = || small_figure(&shown.patch().modes, shown.guide().family);
+                let figure = self.figure.take().filter(|(subject, _)| *subject == shown.subject());
+                let (_, figure) = self.figure.insert(figure.unwrap_or_else(|| (shown.subject(), of())));
+                let about = (shown.patch(), shown.guide(), is_preset, &*figure);
                 sections::show(ui, left, PAGES[page], (part, std::mem::take(&mut self.is_new)), about, controls);
                 None
             }

@@ -2,7 +2,7 @@
 
 mod hands;
 mod movers;
-mod stage;
+pub(super) mod stage;
 mod things;
 
 use crate::editor::body::view::{BodyView, velocity};
