@@ -1,7 +1,7 @@
 //! The browser's details of a sound, and the field to save a sound under a name.
 
 use super::sounds::Sounds;
-use crate::editor::controls::{Controls, Hint, Said};
+use crate::editor::controls::{Controls, Hint, Pick, Said};
 use crate::editor::theme::{SMALL, TEXT, TITLE_HEIGHT, font};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::{line, name_field, paragraph, take_over};
@@ -147,8 +147,9 @@ impl Details {
         if button(ui, similar, "More like this", "Find sounds like this one", look, palette).clicked() {
             return Some(Outcome { compares: true, is_stale: false, ..Outcome::of(Ok(String::new())) });
         }
-        let field =
-            Rect::from_min_max(pos2(rect.left(), rect.bottom() - 54.0), pos2(rect.right(), rect.bottom() - 30.0));
+        let row = Rect::from_min_max(pos2(rect.left(), rect.bottom() - 54.0), pos2(rect.right(), rect.bottom() - 30.0));
+        let elsewhere = row.with_min_x(row.right() - 24.0);
+        let field = row.with_max_x(elsewhere.left() - 4.0);
         let id = Id::unique("save name");
         let edit = TextEdit::singleline(&mut self.name).id(id).hint_text("a name");
         let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
@@ -161,6 +162,14 @@ impl Details {
             ui.ctx().request_repaint();
         }
         is_entered |= enters(&response);
+        let response = button(ui, elsewhere, "…", "Save in another folder", Look::Plain, palette);
+        if response.hovered() {
+            *controls.hint = Hint::new("Save in another folder", "A copy, which is not among your sounds.");
+        }
+        if response.clicked() {
+            let sound = self.sound(sounds, controls);
+            controls.interaction.pick = Some(Pick::Place(Box::new(sound)));
+        }
         let wide = (rect.width() - 8.0) / 3.0;
         let save = Rect::from_min_size(pos2(rect.left(), rect.bottom() - 24.0), vec2(wide, 24.0));
         let rename = save.translate(vec2(wide + 4.0, 0.0));
@@ -216,20 +225,26 @@ impl Details {
         Outcome { is_stale: true, ..Outcome::of(starred.map(|()| format!("renamed {}", path.display()))) }
     }
 
+    /// The present sound as it is saved.
+    fn sound(&mut self, sounds: &Sounds, controls: &Controls) -> Playable {
+        let (author, tags) = self.about.get_or_insert_with(|| About::of(sounds, controls)).read();
+        let mut sound = controls.params.state().into_sound();
+        sound.rename(self.name.trim());
+        sound.describe(author, tags);
+        sound
+    }
+
     fn save(&mut self, sounds: &Sounds, controls: &mut Controls) -> Outcome {
         let name = self.name.trim().to_owned();
         let replace = self.confirm.take().is_some_and(|confirmed| confirmed == name);
         let Some(library) = &sounds.library else {
             return Outcome::of(Err("the system does not say where your data is kept".to_owned()));
         };
-        let (author, tags) = self.about.get_or_insert_with(|| About::of(sounds, controls)).read();
-        let mut sound = controls.params.state().into_sound();
-        sound.rename(name.clone());
-        sound.describe(author.clone(), tags.clone());
+        let sound = self.sound(sounds, controls);
         Outcome::of(match library.save(&sound, replace) {
             Ok(path) => {
                 controls.params.rename(name);
-                controls.params.describe(author, tags);
+                controls.params.describe(sound.author().to_owned(), sound.tags().to_vec());
                 controls.history.saved();
                 Ok(format!("saved {}", path.display()))
             }

@@ -6,7 +6,7 @@ mod list;
 pub(super) mod sounds;
 mod tags;
 
-use crate::editor::controls::{Controls, Said};
+use crate::editor::controls::{Controls, Hint, Pick, Said};
 use crate::editor::keyboard::audition::Audition;
 use crate::editor::theme::{GAP, PADDING, Palette, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
@@ -27,6 +27,9 @@ use tags::Tags;
 
 /// Width of the list of categories, and of the details of a sound.
 const SIDE: [f32; 2] = [112.0, 250.0];
+
+/// Width of the button that imports files.
+const IMPORT: f32 = 54.0;
 
 /// What the browser is opened for.
 #[derive(Clone, Copy, PartialEq)]
@@ -113,7 +116,15 @@ impl Browser {
         let present = controls.params.name();
         let (search, rest) = list.split_top_bottom_at_y(list.top() + 28.0);
         let (tags, rows) = rest.split_top_bottom_at_y(rest.top() + tags::height());
-        let command = self.search(ui, search, palette);
+        let import = search.with_max_y(search.top() + 22.0).with_min_x(search.right() - IMPORT);
+        let command = self.search(ui, search.with_max_x(import.left() - 4.0), palette);
+        let response = button(ui, import, "Import", "Import files", Look::Plain, palette);
+        if response.hovered() {
+            *controls.hint = Hint::new("Import", "Open sounds, kits, scales, or recordings to make a sound of.");
+        }
+        if response.clicked() {
+            controls.interaction.pick = Some(Pick::Any);
+        }
         let mut found = sounds.find(self.category, &self.words, self.likeness.places());
         self.tags.retain(&mut found);
         self.tags.show(ui, tags, &found, palette);

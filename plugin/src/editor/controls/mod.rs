@@ -15,6 +15,7 @@ use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
 use sprung::engine::SoundingNote;
 use sprung::params::{PARAMS, Param, ParamInfo};
+use sprung::preset::Playable;
 use std::collections::HashMap;
 use std::time::Duration;
 
@@ -23,6 +24,16 @@ pub(super) const FRAME: Duration = Duration::from_millis(16);
 
 /// What the window says of what was done, or why it could not be done.
 pub(super) type Said = Result<String, String>;
+
+/// What is to be chosen in the list of files.
+pub(super) enum Pick {
+    /// Anything that can be dropped on the window.
+    Any,
+    /// A scale or a keyboard mapping.
+    Scale,
+    /// A place to save a sound at.
+    Place(Box<Playable>),
+}
 
 /// Text that is being typed instead of a parameter's value.
 pub(super) struct Typing {
@@ -65,6 +76,8 @@ pub(super) struct Interaction {
     pub(super) touched: Option<usize>,
     /// A message about what the user has done in this pass.
     pub(super) said: Option<Said>,
+    /// What is to be chosen in the list of files, which opens for it.
+    pub(super) pick: Option<Pick>,
     /// The knob under a source that is being dragged, in this pass.
     pub(super) aim: Option<&'static ParamInfo>,
     /// Whether the wheel has scrolled a page since the pointer moved last.

@@ -10,6 +10,11 @@ use egui::Ui;
 use sprung::preset::library::Library;
 use std::path::{Path, PathBuf};
 
+/// The endings of files that can be dropped.
+pub(super) const SOUNDS: [&str; 1] = ["toml"];
+pub(super) const SCALES: [&str; 2] = ["scl", "kbm"];
+pub(super) const RECORDINGS: [&str; 9] = ["aif", "aifc", "aiff", "flac", "mp3", "oga", "ogg", "wav", "wave"];
+
 /// The files that were dropped since the last pass.
 pub(super) fn dropped(ui: &Ui) -> Vec<PathBuf> {
     ui.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect())
@@ -21,7 +26,7 @@ fn ending(path: &Path) -> String {
 
 /// Whether the file's extension is that of a recording.
 pub(super) fn is_recording(path: &Path) -> bool {
-    ["aif", "aifc", "aiff", "flac", "mp3", "oga", "ogg", "wav", "wave"].contains(&ending(path).as_str())
+    RECORDINGS.contains(&ending(path).as_str())
 }
 
 /// Handles a dropped file that is not a recording. Returns a message.

@@ -45,7 +45,7 @@ impl Stage {
         self.steps(&[Event::ModifiersChanged(Modifiers::NONE)]);
     }
 
-    fn click(&mut self, pos: Pos2) {
+    pub(super) fn click(&mut self, pos: Pos2) {
         let events =
             [Event::PointerMoved(pos), self.press(pos, true, Modifiers::NONE), self.press(pos, false, Modifiers::NONE)];
         self.steps(&events);

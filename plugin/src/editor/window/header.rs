@@ -148,7 +148,13 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
     request = request.or(view_menu(ui, view, header.view, palette));
     let meter = Rect::from_min_max(pos2(left + GAP, rect.top()), rect.max);
     if meter.width() >= 40.0 {
-        meter::paint(ui.painter(), meter.with_min_x(meter.left().max(meter.right() - 150.0)), header.levels, palette);
+        let meter = meter.with_min_x(meter.left().max(meter.right() - 150.0));
+        meter::paint(ui.painter(), meter, header.levels, palette);
+        let response = ui.interact(meter, Id::unique("meter"), Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, "Level"));
+        if response.hovered() {
+            *controls.hint = Hint::new("Level", meter::figures(header.levels));
+        }
     }
     request
 }

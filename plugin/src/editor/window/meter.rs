@@ -28,6 +28,16 @@ impl Meter {
     }
 }
 
+/// Levels in figures.
+pub(super) fn figures(levels: [f32; 2]) -> String {
+    let figure = |level: f32| match RANGE * (level - 1.0) {
+        db if level > 0.0 => format!("{db:.1} dB"),
+        _ => "silent".to_owned(),
+    };
+    let [left, right] = levels.map(figure);
+    format!("left {left}, right {right}; 0 dB is full scale")
+}
+
 pub(super) fn paint(painter: &Painter, rect: Rect, levels: [f32; 2], palette: &Palette) {
     for (level, offset) in levels.into_iter().zip([-4.5, 4.5]) {
         let centre = pos2(rect.center().x, rect.center().y + offset);
@@ -56,5 +66,11 @@ mod tests {
         assert!((left - 0.93).abs() < 1e-6 && meter.is_moving());
         assert!(meter.levels([1.5; 2], 0.1)[0] > 1.0, "above full scale");
         assert!(!meter.levels([f32::NAN; 2], 0.1)[1].is_nan());
+    }
+
+    #[test]
+    fn levels_are_told_in_decibels() {
+        let levels = Meter::default().levels([0.5, 0.0], 0.02);
+        assert_eq!(figures(levels), "left -6.0 dB, right silent; 0 dB is full scale");
     }
 }

@@ -24,6 +24,7 @@ use crate::editor::manual::Manual;
 use crate::editor::modes::ModesView;
 use crate::editor::motion::MotionPage;
 use crate::editor::pages::{self, Pages};
+use crate::editor::picker::{Picked, Picker};
 use crate::editor::play::PlayPage;
 use crate::editor::routes::{carry, learn};
 use crate::editor::theme::layout::Layout;
@@ -50,6 +51,7 @@ const LONGEST: f32 = 0.25;
 enum Over {
     Browser,
     Manual,
+    Files,
 }
 
 /// An open window.
@@ -77,7 +79,10 @@ pub(super) struct Window {
     kit: KitPage,
     manual: Manual,
     fitting: Fitting,
+    picker: Picker,
     over: Option<Over>,
+    /// What was shown before the list of files.
+    under: Option<Over>,
     /// The other one of the two versions of the sound, and whether it is changed ([`History::is_changed`]).
     other: Option<(State, bool)>,
     is_b: bool,
@@ -123,7 +128,9 @@ impl Window {
             kit: KitPage::default(),
             manual: Manual::default(),
             fitting: Fitting::default(),
+            picker: Picker::default(),
             over: None,
+            under: None,
             other: None,
             is_b: false,
             context: None,
@@ -221,7 +228,7 @@ impl Window {
         if seen != Some(Face::Motion) {
             self.motion.leave();
         }
-        let mut read = None;
+        let (mut read, mut picked) = (None, Vec::new());
         match self.over {
             Some(Over::Browser) => {
                 if let Some((message, is_done)) = self.browser.show(ui, layout.page(), &mut controls) {
@@ -233,6 +240,16 @@ impl Window {
             Some(Over::Manual) => {
                 if self.manual.show(ui, layout.page(), palette) {
                     self.over = None;
+                }
+            }
+            Some(Over::Files) => {
+                if let Some(done) = self.picker.show(ui, layout.page(), self.browser.library(), &mut controls) {
+                    self.over = None;
+                    match done {
+                        Picked::Files(files) => picked = files,
+                        Picked::Saved(message) => self.message = Ok(message),
+                        Picked::Nothing => self.over = self.under,
+                    }
                 }
             }
             None if self.face == Face::Play => {
@@ -268,8 +285,15 @@ impl Window {
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.over = None;
         }
-        let (recordings, files): (Vec<_>, Vec<_>) =
-            drops::dropped(ui).into_iter().partition(|path| drops::is_recording(path));
+        if let Some(pick) = controls.interaction.pick.take() {
+            self.picker.open(pick, self.browser.library());
+            (self.under, self.over) = (self.over, Some(Over::Files));
+        }
+        if self.over != Some(Over::Files) {
+            self.picker.close();
+        }
+        picked.extend(drops::dropped(ui));
+        let (recordings, files): (Vec<_>, Vec<_>) = picked.into_iter().partition(|path| drops::is_recording(path));
         for path in files {
             self.message = drops::take(&path, self.browser.library(), &mut controls);
             self.browser.forget();
