@@ -67,6 +67,8 @@ pub(super) struct Header<'a> {
     pub(super) locked: &'a BTreeSet<&'static str>,
     /// Levels of left and right, as shares of the meter's length.
     pub(super) levels: [f32; 2],
+    /// By how many decibels the limiter lowers the sound.
+    pub(super) lowered: f32,
 }
 
 pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Controls) -> Option<Request> {
@@ -149,11 +151,11 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
     let meter = Rect::from_min_max(pos2(left + GAP, rect.top()), rect.max);
     if meter.width() >= 40.0 {
         let meter = meter.with_min_x(meter.left().max(meter.right() - 150.0));
-        meter::paint(ui.painter(), meter, header.levels, palette);
+        meter::paint(ui.painter(), meter, header.levels, header.lowered, palette);
         let response = ui.interact(meter, Id::unique("meter"), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, "Level"));
         if response.hovered() {
-            *controls.hint = Hint::new("Level", meter::figures(header.levels));
+            *controls.hint = Hint::new("Level", meter::figures(header.levels, header.lowered));
         }
     }
     request

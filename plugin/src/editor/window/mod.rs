@@ -209,6 +209,7 @@ impl Window {
             view,
             locked: &self.locked,
             levels,
+            lowered: if is_silent { 0.0 } else { snapshot.lowered },
         };
         let request = header::show(ui, layout.header, &header, &mut controls);
         let down = (0..16).fold(0, |down, channel| down | telemetry.keys(channel));
