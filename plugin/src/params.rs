@@ -170,6 +170,11 @@ impl SprungParams {
         self.locked().playable.rename(name);
     }
 
+    /// Says who made the preset or kit, and gives it other tags. Not for the audio thread.
+    pub(crate) fn describe(&self, author: String, tags: Vec<String>) {
+        self.locked().playable.describe(author, tags);
+    }
+
     /// Size, zoom and theme of the window. Not for the audio thread.
     pub(crate) fn view(&self) -> View {
         self.locked().view

@@ -129,6 +129,11 @@ impl Limiter {
         self.forget_samples();
     }
 
+    /// The present gain, an amplitude ratio.
+    pub(crate) fn gain(&self) -> f64 {
+        self.gain
+    }
+
     /// Whether silence would pass unchanged, so that it need not be processed.
     pub fn is_idle(&self) -> bool {
         self.is_idle

@@ -16,6 +16,7 @@
 //! | `ensemble/` | a synth for each channel, rendered in chunks and mixed |
 //! | `blend` | the balance of an effect between what comes in and what the synth makes of it |
 //! | `snapshot`, `telemetry`, `scope`, `atomic` | what displays read while the engine plays |
+//! | `curves` | what parts of a sound do, for displays |
 //! | `voice_state` | a voice and its modes as they are, for labels |
 //! | `workers` | who does the work of a block: its caller, or several threads |
 
@@ -24,6 +25,7 @@ pub mod banks;
 mod blend;
 mod channel;
 mod controls;
+pub mod curves;
 mod damping;
 pub mod ensemble;
 pub mod event;

@@ -5,6 +5,7 @@ use super::voice::SynthVoice;
 use crate::dsp::mode_bank::MAX_MODES;
 use crate::params::Param;
 use crate::patch::routes::MAX_ROUTES;
+use crate::units::db_from_gain;
 
 /// Maximum number of notes in a snapshot.
 pub(crate) const SHOWN_NOTES: usize = 16;
@@ -41,6 +42,8 @@ pub struct Mass {
 pub struct Snapshot {
     /// Number of voices that play or fade.
     pub voices: u32,
+    /// By how many decibels the limiter lowers the sound.
+    pub lowered: f32,
     /// The masses by mode number, added up over all voices; of a kit, over those that play the sound of the newest note. Modes after
     /// the first [`MAX_MODES`] are left out.
     pub masses: [Mass; MAX_MODES],
@@ -51,11 +54,16 @@ pub struct Snapshot {
 impl Default for Snapshot {
     /// Silence.
     fn default() -> Self {
-        Self { voices: 0, masses: [Mass::default(); MAX_MODES], notes: [None; SHOWN_NOTES] }
+        Self { voices: 0, lowered: 0.0, masses: [Mass::default(); MAX_MODES], notes: [None; SHOWN_NOTES] }
     }
 }
 
 impl Snapshot {
+    /// Sets the gain of the limiter, an amplitude ratio of at most 1.
+    pub(super) fn set_limiter(&mut self, gain: f64) {
+        self.lowered = -db_from_gain(gain).min(0.0) as f32;
+    }
+
     /// Adds a voice that plays `note`, with or without its masses.
     pub(super) fn add(&mut self, note: &Note, voice: &SynthVoice, has_masses: bool) {
         // The unison voices of a note have the same routes.

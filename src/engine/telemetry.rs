@@ -37,6 +37,7 @@ pub struct Telemetry {
     recent_share: AtomicF32,
     peaks: [AtomicF32; 2],
     voices: AtomicU32,
+    lowered: AtomicF32,
     masses: Masses,
     sounding_notes: Sounding,
     keys: [[AtomicU64; 2]; 16],
@@ -95,7 +96,8 @@ impl Telemetry {
     pub fn snapshot(&self) -> Snapshot {
         self.wanted.store(SNAPSHOTS_PER_LOOK, Relaxed);
         let (voices, notes) = (self.voices.load(Relaxed), self.sounding_notes.read());
-        let mut snapshot = Snapshot { voices, notes, ..Snapshot::default() };
+        let lowered = self.lowered.load();
+        let mut snapshot = Snapshot { voices, lowered, notes, ..Snapshot::default() };
         for (mass, [displacement, energy]) in snapshot.masses.iter_mut().zip(&self.masses.0) {
             (mass.displacement, mass.energy) = (displacement.load(), energy.load());
         }
@@ -222,6 +224,7 @@ impl TelemetryWriter {
         self.frames_to_snapshot = self.sample_rate / SNAPSHOT_RATE;
         let snapshot = snapshot();
         telemetry.voices.store(snapshot.voices, Relaxed);
+        telemetry.lowered.store(snapshot.lowered);
         telemetry.sounding_notes.write(&snapshot.notes);
         for (mass, [displacement, energy]) in snapshot.masses.iter().zip(&telemetry.masses.0) {
             displacement.store(mass.displacement);

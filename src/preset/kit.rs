@@ -101,6 +101,14 @@ impl Playable {
         }
     }
 
+    /// Says who made it, and gives it other tags.
+    pub fn describe(&mut self, author: String, tags: Vec<String>) {
+        match self {
+            Self::Preset(preset) => (preset.author, preset.tags) = (author, tags),
+            Self::Kit(kit) => (kit.author, kit.tags) = (author, tags),
+        }
+    }
+
     /// The name of the preset or kit.
     pub fn name(&self) -> &str {
         match self {

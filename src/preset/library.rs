@@ -248,6 +248,14 @@ fn data_folder(variable: &dyn Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
     Some(data.join("sprung"))
 }
 
+/// Writes the file of a sound to a path of any folder, whole or not at all; one that is there is replaced only if told so.
+///
+/// # Errors
+/// As [`Library::save`].
+pub fn export(sound: &Playable, path: &Path, replace: bool) -> Result<()> {
+    write_whole(path, text_of(sound)?.as_bytes(), replace)
+}
+
 /// Reads a preset or kit file.
 fn read(path: &Path) -> Result<Playable> {
     let mut open = |path: &Path| File::open(path).map_err(|source| Error::io(path.display().to_string(), source));

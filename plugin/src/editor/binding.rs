@@ -1,6 +1,6 @@
 //! Controllers that turn knobs: learnt from the next one that moves, forgotten, and kept for the user.
 
-use crate::editor::controls::{Binding, Controls};
+use crate::editor::controls::{Binding, Controls, Said};
 use crate::params::SprungParams;
 use egui::{Key, Ui};
 use nice_plug_core::context::PluginApi;
@@ -35,13 +35,13 @@ pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
 }
 
 /// Carries out what the menu began. Returns a message.
-pub(super) fn follow(ui: &Ui, library: Option<&Library>, controls: &mut Controls) -> Option<String> {
+pub(super) fn follow(ui: &Ui, library: Option<&Library>, controls: &mut Controls) -> Option<Said> {
     let learned = controls.params.learned();
     let (info, controller) = match controls.interaction.binding.as_mut()? {
         Binding::Forget(info) => (*info, None),
         Binding::Learn { .. } if ui.input(|input| input.key_pressed(Key::Escape)) => {
             stop(controls.params, &mut controls.interaction.binding);
-            return Some("nothing was learnt".to_owned());
+            return Some(Ok("nothing was learnt".to_owned()));
         }
         Binding::Learn { info, is_prompted } => {
             ui.ctx().request_repaint_after(PAUSE);
@@ -49,38 +49,36 @@ pub(super) fn follow(ui: &Ui, library: Option<&Library>, controls: &mut Controls
             let Some(controller) = learned.heard() else {
                 if !waits {
                     controls.interaction.binding = None;
-                    return Some("nothing was learnt: another window has ended it".to_owned());
+                    return Some(Err("nothing was learnt: another window has ended it".to_owned()));
                 }
                 let asks = !std::mem::replace(is_prompted, true);
                 return asks
-                    .then(|| format!("{}: move the knob or fader that is to turn it; Escape gives up", info.name));
+                    .then(|| Ok(format!("{}: move the knob or fader that is to turn it; Escape gives up", info.name)));
             };
             if let Err(reason) = check_controller(controller) {
                 learned.listen();
-                return Some(reason);
+                return Some(Err(reason));
             }
             (*info, Some(controller))
         }
     };
     stop(controls.params, &mut controls.interaction.binding);
     let Some(library) = library else {
-        return Some("the system names no folder in which a controller could be kept".to_owned());
+        return Some(Err("the system names no folder in which a controller could be kept".to_owned()));
     };
     let before =
         controller.and_then(|controller| learned.param(controller)).filter(|before| before.param != info.param);
-    Some(match library.set_controller(info.param, controller) {
-        Err(error) => error.to_string(),
-        Ok(controllers) => {
-            learned.publish(&controllers);
-            let instead = before.map_or(String::new(), |before| format!(" in place of {}", before.name));
-            match controller {
-                None => format!("no controller turns {}", info.name),
-                Some(controller) => {
-                    format!("CC {controller} turns {}{instead}, once it has reached its position", info.name)
-                }
+    let kept = library.set_controller(info.param, controller).map_err(|error| error.to_string());
+    Some(kept.map(|controllers| {
+        learned.publish(&controllers);
+        let instead = before.map_or(String::new(), |before| format!(" in place of {}", before.name));
+        match controller {
+            None => format!("no controller turns {}", info.name),
+            Some(controller) => {
+                format!("CC {controller} turns {}{instead}, once it has reached its position", info.name)
             }
         }
-    })
+    }))
 }
 
 /// Waits no longer for a controller, if the window does.

@@ -10,7 +10,7 @@
 //! | `motion`, `routes` | what moves: sources, envelopes and oscillators as curves; routes as sentences, also learnt and dragged |
 //! | `kit` | the pads of a kit, the sounds that are put on them, and the chosen pad; all keys of a preset |
 //! | `keyboard` | the piano, and whatever else plays a key |
-//! | `browser`, `manual`, `drops` | over the window: sounds to find and save, the manual, fits of dropped recordings |
+//! | `browser`, `manual`, `drops`, `picker` | over the window: sounds to find and save, the manual, fits of dropped recordings, files |
 //! | `widgets` | what all of these are made of |
 //! | `background` | not seen: work of seconds on a thread of its own |
 //! | `binding` | in the menus of knobs: controllers that turn them |
@@ -43,6 +43,7 @@ mod manual;
 mod modes;
 mod motion;
 mod pages;
+mod picker;
 mod play;
 mod routes;
 #[cfg(test)]

@@ -35,12 +35,18 @@ impl Bow {
         [self.speed, self.force].map(|[start, step]| (start + passed * step).max(0.0))
     }
 
+    /// Friction at a slip, as a share of that without: `width` is the slip at which it has fallen half way.
+    #[inline(always)]
+    pub(crate) fn friction(width: f32, slip: f32) -> f32 {
+        SLIDING + (1.0 - SLIDING) * (width / (width + slip.abs()))
+    }
+
     /// The force on the point in that frame, if the point moves at `velocity`.
     pub(crate) fn force_on(&self, frame: usize, velocity: f32) -> f32 {
         let [speed, force] = self.at(frame);
         let slip = speed - velocity;
         let width = self.width * speed + f32::MIN_POSITIVE;
-        let friction = force * (SLIDING + (1.0 - SLIDING) * (width / (width + slip.abs())));
+        let friction = force * Self::friction(width, slip);
         (STICKING * slip).min(friction).max(-friction)
     }
 }

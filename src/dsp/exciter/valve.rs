@@ -27,6 +27,14 @@ pub struct ValveLaw {
     pub reach: f64,
 }
 
+impl ValveLaw {
+    /// The flow at a steady pressure difference, through a valve that lets a flow of `opening` through at a difference of 1 if it
+    /// does not move.
+    pub(crate) fn steady_flow(&self, opening: f64, difference: f64) -> f64 {
+        opening * (1.0 + self.reach * difference).clamp(0.0, WIDEST.into()) * sqrt(difference.max(0.0))
+    }
+}
+
 /// The breath of some frames, and the tube that it meets.
 #[derive(Clone, Copy, Debug)]
 pub struct Breath {

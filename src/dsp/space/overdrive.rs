@@ -93,6 +93,18 @@ impl Overdrive {
     /// Greatest drive in dB.
     pub(crate) const MOST: f32 = 36.0;
 
+    /// `k` for a drive in dB.
+    fn hardness(decibels: f32) -> f32 {
+        let lift = exp(f64::from(decibels) * LN_10 / 20.0);
+        sqrt((lift * lift - 1.0).max(0.0)) as f32
+    }
+
+    /// What becomes of a steady sample: `f`.
+    pub(crate) fn steady(decibels: f32, sample: f32) -> f32 {
+        let square = Self::hardness(decibels) * Self::hardness(decibels);
+        sample * (1.0 + square).sqrt() / (1.0 + square * sample * sample).sqrt()
+    }
+
     /// An overdrive that is off.
     pub fn new(sample_rate: f64) -> Self {
         Self {
@@ -112,8 +124,7 @@ impl Overdrive {
             return;
         }
         self.decibels = decibels;
-        let lift = exp(f64::from(decibels) * LN_10 / 20.0);
-        self.hardness.set(sqrt((lift * lift - 1.0).max(0.0)) as f32);
+        self.hardness.set(Self::hardness(decibels));
         self.blend.set(if decibels > 0.0 { 1.0 } else { 0.0 });
     }
 

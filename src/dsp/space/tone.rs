@@ -48,6 +48,16 @@ impl Tone {
     /// Greatest boost and cut in dB.
     pub(crate) const MOST: f32 = 18.0;
 
+    /// The gain in dB at a frequency in Hz, for gains of lows and highs in dB: of the filters that are approximated.
+    pub(crate) fn gain_at(low: f32, high: f32, hertz: f64) -> f64 {
+        let shelf = |decibels: f32, way: f64| {
+            let gain = exp(f64::from(decibels) * LN_10 / 20.0);
+            10.0 * log((way + gain) / (way + 1.0 / gain)) / LN_10
+        };
+        let square = |ratio: f64| ratio * ratio;
+        shelf(low, square(hertz / Self::LOW_CORNER)) + shelf(high, square(Self::HIGH_CORNER / hertz))
+    }
+
     /// A tone control that is off.
     pub fn new(sample_rate: f64) -> Self {
         let shelf = Shelf {

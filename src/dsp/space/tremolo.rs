@@ -126,8 +126,12 @@ impl Tremolo {
 
     fn gains_at(&self, phase: f64, frames: usize) -> [f32; 2] {
         let depth = f64::from(self.depth.after(frames));
-        let gain = |phase: f64| (1.0 - depth * 0.5 * (1.0 - cos(TAU * phase))) as f32;
-        [gain(phase), gain(phase + f64::from(self.stereo_phase.after(frames)))]
+        [phase, phase + f64::from(self.stereo_phase.after(frames))].map(|phase| Self::gain(depth, phase))
+    }
+
+    /// The gain of a depth from 0 to 1, after some turns of the motor.
+    pub(crate) fn gain(depth: f64, turns: f64) -> f32 {
+        (1.0 - depth * 0.5 * (1.0 - cos(TAU * turns))) as f32
     }
 
     /// Changes `left` and `right`, up to the length of the shorter.

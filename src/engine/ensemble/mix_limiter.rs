@@ -75,6 +75,11 @@ impl MixLimiter {
         self.channels.is_on()
     }
 
+    /// The present gain, an amplitude ratio.
+    pub(super) fn gain(&self) -> f64 {
+        self.limiter.gain()
+    }
+
     /// How much the limiter has reduced the level so far.
     pub(super) fn work(&self) -> Work {
         self.limiter.work()

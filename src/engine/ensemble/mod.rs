@@ -161,6 +161,7 @@ impl Ensemble {
     pub fn snapshot(&self) -> Snapshot {
         let mut snapshot = Snapshot::default();
         self.parts.iter().for_each(|part| part.synth.show(&mut snapshot));
+        snapshot.set_limiter(self.limiter.gain());
         snapshot
     }
 

@@ -230,6 +230,7 @@ impl Synth {
 
     /// Adds the voices that sound now to a snapshot. Real-time safe.
     pub fn show(&self, snapshot: &mut Snapshot) {
+        snapshot.set_limiter(self.limiter.gain());
         let newest = self.manager.sounding_voices().min_by(|(_, one), (_, other)| one.age().total_cmp(&other.age()));
         // The modes of a kit's other sounds are others.
         let shown = newest.map(|(note, _)| note.patch);

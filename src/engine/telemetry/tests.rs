@@ -57,7 +57,7 @@ fn keys_and_programs_are_kept_by_channel() {
 fn peaks_and_masses_are_those_of_the_sound_and_only_while_somebody_looks() {
     let (telemetry, mut writer) = telemetry(4_000.0);
     assert!(telemetry.is_silent());
-    let mut moved = Snapshot { voices: 2, ..Snapshot::default() };
+    let mut moved = Snapshot { voices: 2, lowered: 1.5, ..Snapshot::default() };
     moved.masses[63].displacement = -0.5;
     moved.masses[63].energy = 0.25;
     moved.notes[0] = Some(crate::engine::SoundingNote { key: 60, ..Default::default() });

@@ -13,6 +13,7 @@ use crate::dsp::exciter::{BurstSetup, Decay, Drive, Exciter, Player, Stroke};
 use crate::dsp::mode_bank::{ExcitationRows, MAX_MODES};
 use crate::dsp::random;
 use crate::dsp::series::sines;
+use crate::engine::curves;
 use crate::engine::gain::exciter_gain;
 use crate::engine::note::Note;
 use crate::engine::voice_manager::Unison;
@@ -265,9 +266,7 @@ impl Strike {
         let follow = values.share(Param::Velocity);
         let force = |own| {
             let power = 2.0 * (follow + values.share(own)).max(0.0);
-            // Velocity 0 is without force even if forces do not follow the velocity.
-            let force = if note.velocity > 0.0 { pow(f64::from(note.velocity), power) } else { 0.0 };
-            force * soft / sqrt(count as f64)
+            curves::force(note.velocity, power) * soft / sqrt(count as f64)
         };
         let [mallet, pluck, burst] = [Param::MalletVelocity, Param::PluckVelocity, Param::NoiseVelocity].map(force);
         let levels = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel];

@@ -129,14 +129,36 @@ impl Origin {
     }
 }
 
-/// The new body, with those properties of the old one that the model does not determine.
+/// The new body, with those properties of the old one that the model does not determine. A material that is not the usual one of the
+/// old model was chosen and stays, unless one of the two is of air, which is no material to choose.
 fn like(old: &Body, new: Body) -> Body {
     let Body { pitch, damping, spread, pan, strike_share, follows_key, modes, seed, .. } = *old;
     let pitch = if matches!(pitch, Pitch::Frequency(_)) { pitch } else { new.pitch };
-    Body { pitch, damping, spread, pan, strike_share, follows_key, modes, seed, ..new }
+    let is_usual = old.material == Body::new(old.model.clone()).material;
+    let is_air = [old, &new].iter().any(|body| body.material.id == "air");
+    let material = if is_usual || is_air { new.material } else { old.material };
+    Body { pitch, material, damping, spread, pan, strike_share, follows_key, modes, seed, ..new }
 }
 
 /// The name of a model as shown to the user.
 pub fn model_name(id: &str) -> String {
     id.replace('_', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::sound::bodies::MATERIALS;
+
+    #[test]
+    fn a_chosen_material_stays_where_the_new_body_is_made_of_one() {
+        let model = |id: &str| Model::find(id).unwrap();
+        let mut origin = Origin::Table.with_model(false, Some(model("church_bell")));
+        let material =
+            |origin: &Origin, id: &str| origin.with_model(false, Some(model(id))).body().unwrap().material.id;
+        assert_eq!(material(&origin, "marimba"), "rosewood", "nobody has chosen the bell's bronze");
+        origin.body_mut().unwrap().material = *MATERIALS.iter().find(|material| material.id == "glass").unwrap();
+        assert_eq!(["marimba", "open_tube"].map(|id| material(&origin, id)), ["glass", "air"]);
+        assert_eq!(material(&origin.with_model(false, Some(model("open_tube"))), "marimba"), "rosewood");
+    }
 }

@@ -28,8 +28,8 @@ pub struct BodyShape {
     pub caption: String,
 }
 
-/// The model that a table of modes is drawn as, and its name.
-fn model_of(family: Option<Family>) -> (&'static str, Model) {
+/// The model that a table of modes is drawn as, and the name that it has in presets.
+pub fn suggested_model(family: Option<Family>) -> (&'static str, Model) {
     let id = match family {
         Some(Family::Kick | Family::Snare | Family::Tom | Family::HandDrum) => "membrane",
         Some(Family::Hat | Family::Cymbal) => "free_disc",
@@ -47,14 +47,16 @@ fn model_of(family: Option<Family>) -> (&'static str, Model) {
 pub fn small_figure(modes: &ModeTable, family: Option<Family>) -> Figure {
     match Origin::of(modes).with_places().body() {
         Some(body) => Figure::small(body),
-        None => Figure::small(&Body::new(model_of(family).1)),
+        None => Figure::small(&Body::new(suggested_model(family).1)),
     }
 }
 
 impl BodyShape {
     /// The body of a sound of this family. This is slow: it computes the shapes of all modes.
     pub fn of(modes: &ModeTable, family: Option<Family>) -> Self {
-        let origin = Origin::of(modes).with_places();
+        let origin = Origin::of(modes);
+        let is_mass = origin.body().is_some_and(|body| body.model == Model::Mass);
+        let origin = origin.with_places();
         let (body, near, caption) = match &origin {
             Origin::FromBody(body) => ((**body).clone(), NEAR[0], model_name(body.model.id())),
             Origin::FromPair(pair) => {
@@ -62,8 +64,12 @@ impl BodyShape {
                 (pair.first.clone(), NEAR[0], caption)
             }
             Origin::Table => {
-                let (id, model) = model_of(family);
-                (Body::new(model), NEAR[1], format!("a table of modes, drawn as a {}", model_name(id)))
+                let (id, model) = suggested_model(family);
+                (
+                    Body::new(model),
+                    NEAR[1],
+                    format!("{}, drawn as a {}", if is_mass { "a mass" } else { "a table of modes" }, model_name(id)),
+                )
             }
         };
         let figure = Figure::of(&body);

@@ -44,6 +44,11 @@ impl BodyView {
         }
     }
 
+    /// Whether the body that was shown has a place to be struck at.
+    pub(crate) fn has_place(&self, shown: &Shown, controls: &Controls) -> bool {
+        self.shape.as_ref().is_some_and(|(_, shape)| strike(shape, shown, controls).is_some())
+    }
+
     /// Shows the body of a sound. Returns the caption.
     pub(crate) fn show(
         &mut self,
@@ -73,6 +78,9 @@ impl BodyView {
         let moved = self.swing.advance(controls.seconds, &shape, energies, rect);
         let place = self.drag.as_ref().map(|drag| drag.point).or(strike(&shape, shown, controls));
         face::paint(ui.painter(), rect, &shape.figure, &moved, place, controls.palette);
+        if shape.origin == Origin::Table && shown.preset().is_some() {
+            face::paint_guess(ui.painter(), rect, &shape.figure, controls.palette);
+        }
         let caption = shape.caption.clone();
         self.shape = Some((subject, shape));
         caption
@@ -92,12 +100,17 @@ impl BodyView {
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Struck body"));
         let now = ui.input(|input| input.time);
         let pointer = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
-        let found = pointer.or(response.hover_pos()).map(|pointer| shape.figure.form.nearest(rect, pointer));
+        // Pressed and let go between two passes.
+        let is_clicked = response.clicked() && ui.input(|input| input.pointer.any_click());
+        let found = pointer
+            .or(response.interact_pointer_pos())
+            .or(response.hover_pos())
+            .map(|pointer| shape.figure.form.nearest(rect, pointer));
         let point = found.map(|(point, _)| shape.confined(point));
         if let Some(point) = point {
             *controls.hint = Hint::new(describe(point, shape), "Click or drag to where it is struck.");
         }
-        let is_pressed = pointer.is_some() && ui.input(|input| input.pointer.any_pressed());
+        let is_pressed = is_clicked || pointer.is_some() && ui.input(|input| input.pointer.any_pressed());
         if is_pressed && self.drag.is_none() && found.is_some_and(|(_, distance)| distance <= REACH) {
             controls.history.begin(controls.params);
             if let Some(point) = point {
@@ -109,7 +122,7 @@ impl BodyView {
             ui.painter().rect_stroke(rect, RADIUS, Stroke::new(1.5, controls.palette.text), StrokeKind::Inside);
         }
         let Some(drag) = &mut self.drag else {
-            // Pressed and let go between two passes, beside the body, or by the keyboard.
+            // Beside the body, or by the keyboard.
             if response.clicked() {
                 audition.strike(shown.guide().home, velocity(ui), now, controls.params.link());
             }

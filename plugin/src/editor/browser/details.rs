@@ -1,7 +1,7 @@
 //! The browser's details of a sound, and the field to save a sound under a name.
 
 use super::sounds::Sounds;
-use crate::editor::controls::{Controls, Hint};
+use crate::editor::controls::{Controls, Hint, Pick, Said};
 use crate::editor::theme::{SMALL, TEXT, TITLE_HEIGHT, font};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::{line, name_field, paragraph, take_over};
@@ -13,7 +13,7 @@ use sprung::units::note_name;
 
 /// What became of a request of the user's.
 pub(super) struct Outcome {
-    pub(super) message: String,
+    pub(super) message: Said,
     /// Whether the list of sounds has changed.
     pub(super) is_stale: bool,
     /// Whether that was all the user had wanted here.
@@ -23,10 +23,41 @@ pub(super) struct Outcome {
 }
 
 impl Outcome {
-    fn new(message: impl ToString, is_stale: bool) -> Self {
-        Self { message: message.to_string(), is_stale, is_done: false, compares: false }
+    /// What has worked has changed the list.
+    fn of(message: Said) -> Self {
+        Self { is_stale: message.is_ok(), message, is_done: false, compares: false }
     }
 }
+
+/// What is saved with a sound beside its name, as text.
+#[derive(Default)]
+struct About {
+    author: String,
+    /// With commas between them.
+    tags: String,
+}
+
+impl About {
+    /// What is proposed for the loaded sound: its tags, and its author. What is made of a factory sound is not the factory's: the
+    /// author of another sound of the user's, if there is one.
+    fn of(sounds: &Sounds, controls: &Controls) -> Self {
+        let sound = controls.params.state().playable;
+        let factory = Preset::factory().first().map_or("", |preset| preset.author.as_str());
+        let is_other = |author: &&str| !author.is_empty() && *author != factory;
+        let own = sounds.all().filter(|listed| listed.path.is_some()).map(|listed| listed.playable.author());
+        let author = Some(sound.author()).filter(is_other).or(own.into_iter().find(is_other)).unwrap_or_default();
+        Self { author: author.to_owned(), tags: sound.tags().join(", ") }
+    }
+
+    /// The author and the tags.
+    fn read(&self) -> (String, Vec<String>) {
+        let tags = self.tags.split(',').map(str::trim).filter(|tag| !tag.is_empty());
+        (self.author.trim().to_owned(), tags.map(str::to_owned).collect())
+    }
+}
+
+/// Height of the fields of author and tags.
+const ABOUT: f32 = 52.0;
 
 /// The state of the text field.
 #[derive(Default)]
@@ -35,6 +66,8 @@ pub(super) struct Details {
     pub(super) name: String,
     /// A name whose file is replaced if the user saves again.
     confirm: Option<String>,
+    /// Author and tags to save with, once the user is about to save.
+    about: Option<About>,
     /// Whether the field takes the focus when it is shown next.
     takes_name: bool,
 }
@@ -82,20 +115,41 @@ impl Details {
                 sound.playable.comment().to_owned(),
                 sound.playable.details().to_owned(),
             ];
-            let bottom = rect.bottom() - 92.0;
+            let bottom = rect.bottom() - if self.about.is_some() { 92.0 + ABOUT } else { 92.0 };
             for text in lines {
                 let place = Rect::from_min_max(pos2(rect.left(), top), pos2(rect.right(), bottom.max(top)));
                 top += paragraph(ui.painter(), place, &text, SMALL + 0.5, palette.muted).max(6.0) + 2.0;
             }
         }
-        let similar =
-            Rect::from_min_max(pos2(rect.left(), rect.bottom() - 84.0), pos2(rect.right(), rect.bottom() - 60.0));
+        let enters = |response: &egui::Response| {
+            response.lost_focus() && response.ctx.input(|input| input.key_pressed(Key::Enter))
+        };
+        let mut is_entered = false;
+        if let Some(about) = &mut self.about {
+            let fields = [
+                ("by", "Author of the saved sound", "your name", &mut about.author),
+                ("tags", "Tags of the saved sound", "with commas between", &mut about.tags),
+            ];
+            for (row, (title, name, hint, text)) in fields.into_iter().enumerate() {
+                let top = rect.bottom() - 54.0 - ABOUT + 0.5 * row as f32 * ABOUT;
+                let place = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), 24.0));
+                line(ui.painter(), place, Align2::LEFT_CENTER, title, SMALL, palette.muted);
+                let edit = TextEdit::singleline(text).id(Id::unique(name)).hint_text(hint);
+                let place = place.with_min_x(place.left() + 28.0);
+                let response = ui.put(place, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
+                name_field(&response, name, text);
+                is_entered |= enters(&response);
+            }
+        }
+        let raised = if self.about.is_some() { ABOUT } else { 0.0 };
+        let similar = Rect::from_min_size(pos2(rect.left(), rect.bottom() - 84.0 - raised), vec2(rect.width(), 24.0));
         let look = if controls.params.is_preset() && may_compare { Look::Plain } else { Look::Disabled };
         if button(ui, similar, "More like this", "Find sounds like this one", look, palette).clicked() {
-            return Some(Outcome { compares: true, ..Outcome::new("", false) });
+            return Some(Outcome { compares: true, is_stale: false, ..Outcome::of(Ok(String::new())) });
         }
-        let field =
-            Rect::from_min_max(pos2(rect.left(), rect.bottom() - 54.0), pos2(rect.right(), rect.bottom() - 30.0));
+        let row = Rect::from_min_max(pos2(rect.left(), rect.bottom() - 54.0), pos2(rect.right(), rect.bottom() - 30.0));
+        let elsewhere = row.with_min_x(row.right() - 24.0);
+        let field = row.with_max_x(elsewhere.left() - 4.0);
         let id = Id::unique("save name");
         let edit = TextEdit::singleline(&mut self.name).id(id).hint_text("a name");
         let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
@@ -103,7 +157,19 @@ impl Details {
         if std::mem::take(&mut self.takes_name) {
             take_over(ui, id, &self.name);
         }
-        let enters = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        if response.has_focus() && self.about.is_none() {
+            self.about = Some(About::of(sounds, controls));
+            ui.ctx().request_repaint();
+        }
+        is_entered |= enters(&response);
+        let response = button(ui, elsewhere, "…", "Save in another folder", Look::Plain, palette);
+        if response.hovered() {
+            *controls.hint = Hint::new("Save in another folder", "A copy, which is not among your sounds.");
+        }
+        if response.clicked() {
+            let sound = self.sound(sounds, controls);
+            controls.interaction.pick = Some(Pick::Place(Box::new(sound)));
+        }
         let wide = (rect.width() - 8.0) / 3.0;
         let save = Rect::from_min_size(pos2(rect.left(), rect.bottom() - 24.0), vec2(wide, 24.0));
         let rename = save.translate(vec2(wide + 4.0, 0.0));
@@ -115,11 +181,11 @@ impl Details {
             let folder = sounds.library.as_ref().map(|library| library.presets_folder().display().to_string());
             *controls.hint = Hint::new("Save", folder.unwrap_or_default());
         }
-        if enters || response.clicked() {
+        if is_entered || response.clicked() {
             let outcome = self.save(sounds, controls);
             // Enter is pressed again, or the name is corrected.
-            self.takes_name = enters && !outcome.is_stale;
-            return Some(Outcome { is_done: enters && outcome.is_stale, ..outcome });
+            self.takes_name = is_entered && !outcome.is_stale;
+            return Some(Outcome { is_done: is_entered && outcome.is_stale, ..outcome });
         }
         let look = if own.is_some() { Look::Plain } else { Look::Disabled };
         if button(ui, rename, "Rename", "Give your sound this name", look, palette).clicked()
@@ -130,10 +196,8 @@ impl Details {
         if button(ui, bin, "Bin", "Move your sound to the bin", look, palette).clicked()
             && let (Some(path), Some(library)) = (own.and_then(|own| own.path.as_ref()), &sounds.library)
         {
-            return Some(match library.discard(path) {
-                Ok(place) => Outcome::new(format!("moved to {}", place.display()), true),
-                Err(error) => Outcome::new(error, false),
-            });
+            let moved = library.discard(path).map(|place| format!("moved to {}", place.display()));
+            return Some(Outcome::of(moved.map_err(|error| error.to_string())));
         }
         None
     }
@@ -141,49 +205,54 @@ impl Details {
     /// Renames a file of the user's. If the sound is a favourite, it stays one under the new name.
     fn rename(&mut self, own: &Listed, library: &Library, controls: &Controls) -> Outcome {
         let name = self.name.trim().to_owned();
-        let Some(path) = &own.path else { return Outcome::new("", false) };
-        match library.rename(path, &name) {
-            Ok(path) => {
-                let names = match library.favourites() {
-                    Ok(names) => names,
-                    Err(error) => return Outcome::new(format!("renamed, but its star may be lost: {error}"), true),
-                };
-                if names.contains(own.name()) {
-                    // In this order, since the new name may be the old one.
-                    let moved =
-                        library.set_favourite(own.name(), false).and_then(|()| library.set_favourite(&name, true));
-                    if let Err(error) = moved {
-                        return Outcome::new(error, true);
-                    }
-                }
-                if controls.params.name() == own.name() {
-                    controls.params.rename(name);
-                }
-                Outcome::new(format!("renamed {}", path.display()), true)
+        let Some(path) = &own.path else { return Outcome::of(Err(String::new())) };
+        let path = match library.rename(path, &name) {
+            Ok(path) => path,
+            Err(error) => return Outcome::of(Err(error.to_string())),
+        };
+        // In this order, since the new name may be the old one.
+        let star = || -> sprung::Result<()> {
+            if library.favourites()?.contains(own.name()) {
+                library.set_favourite(own.name(), false)?;
+                library.set_favourite(&name, true)?;
             }
-            Err(error) => Outcome::new(error, false),
+            Ok(())
+        };
+        let starred = star().map_err(|error| format!("renamed, but its star may be lost: {error}"));
+        if controls.params.name() == own.name() {
+            controls.params.rename(name);
         }
+        Outcome { is_stale: true, ..Outcome::of(starred.map(|()| format!("renamed {}", path.display()))) }
+    }
+
+    /// The present sound as it is saved.
+    fn sound(&mut self, sounds: &Sounds, controls: &Controls) -> Playable {
+        let (author, tags) = self.about.get_or_insert_with(|| About::of(sounds, controls)).read();
+        let mut sound = controls.params.state().into_sound();
+        sound.rename(self.name.trim());
+        sound.describe(author, tags);
+        sound
     }
 
     fn save(&mut self, sounds: &Sounds, controls: &mut Controls) -> Outcome {
         let name = self.name.trim().to_owned();
         let replace = self.confirm.take().is_some_and(|confirmed| confirmed == name);
         let Some(library) = &sounds.library else {
-            return Outcome::new("the system does not say where your data is kept", false);
+            return Outcome::of(Err("the system does not say where your data is kept".to_owned()));
         };
-        let mut sound = controls.params.state().into_sound();
-        sound.rename(name.clone());
-        match library.save(&sound, replace) {
+        let sound = self.sound(sounds, controls);
+        Outcome::of(match library.save(&sound, replace) {
             Ok(path) => {
                 controls.params.rename(name);
+                controls.params.describe(sound.author().to_owned(), sound.tags().to_vec());
                 controls.history.saved();
-                Outcome::new(format!("saved {}", path.display()), true)
+                Ok(format!("saved {}", path.display()))
             }
             Err(sprung::Error::Exists { path }) => {
                 self.confirm = Some(name);
-                Outcome::new(format!("{path} exists; Enter again, or Replace, writes over it"), false)
+                Err(format!("{path} exists; Enter again, or Replace, writes over it"))
             }
-            Err(error) => Outcome::new(error, false),
-        }
+            Err(error) => Err(error.to_string()),
+        })
     }
 }

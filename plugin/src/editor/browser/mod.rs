@@ -6,7 +6,7 @@ mod list;
 pub(super) mod sounds;
 mod tags;
 
-use crate::editor::controls::Controls;
+use crate::editor::controls::{Controls, Hint, Pick, Said};
 use crate::editor::keyboard::audition::Audition;
 use crate::editor::theme::{GAP, PADDING, Palette, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
@@ -27,6 +27,9 @@ use tags::Tags;
 
 /// Width of the list of categories, and of the details of a sound.
 const SIDE: [f32; 2] = [112.0, 250.0];
+
+/// Width of the button that imports files.
+const IMPORT: f32 = 54.0;
 
 /// What the browser is opened for.
 #[derive(Clone, Copy, PartialEq)]
@@ -93,7 +96,7 @@ impl Browser {
     }
 
     /// Shows the browser. Returns a message, and whether the user is done here.
-    pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, controls: &mut Controls) -> Option<(String, bool)> {
+    pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, controls: &mut Controls) -> Option<(Said, bool)> {
         let palette = controls.palette;
         let mut sounds = self.sounds.take().unwrap_or_else(|| Sounds::read(self.library.clone()));
         palette.paint_panel(ui.painter(), rect);
@@ -113,7 +116,15 @@ impl Browser {
         let present = controls.params.name();
         let (search, rest) = list.split_top_bottom_at_y(list.top() + 28.0);
         let (tags, rows) = rest.split_top_bottom_at_y(rest.top() + tags::height());
-        let command = self.search(ui, search, palette);
+        let import = search.with_max_y(search.top() + 22.0).with_min_x(search.right() - IMPORT);
+        let command = self.search(ui, search.with_max_x(import.left() - 4.0), palette);
+        let response = button(ui, import, "Import", "Import files", Look::Plain, palette);
+        if response.hovered() {
+            *controls.hint = Hint::new("Import", "Open sounds, kits, scales, or recordings to make a sound of.");
+        }
+        if response.clicked() {
+            controls.interaction.pick = Some(Pick::Any);
+        }
         let mut found = sounds.find(self.category, &self.words, self.likeness.places());
         self.tags.retain(&mut found);
         self.tags.show(ui, tags, &found, palette);
@@ -134,7 +145,7 @@ impl Browser {
         let list = List { found: &found, present: &present, chosen };
         let clicked = list.show(ui, rows, &sounds, palette);
         if let Some(sound) = clicked.star.and_then(|place| found.get(place)) {
-            message = sounds.set_favourite(sound.name(), !sounds.is_favourite(sound)).or(message);
+            message = sounds.set_favourite(sound.name(), !sounds.is_favourite(sound)).map(Err).or(message);
         }
         if let Some(sound) = chosen.or(clicked.sound).and_then(|place| found.get(place)) {
             self.try_out(ui, sound, controls);
@@ -146,16 +157,16 @@ impl Browser {
         if outcome.as_ref().is_some_and(|outcome| outcome.compares)
             && let Playable::Preset(preset) = controls.params.state().playable
         {
-            message = self.likeness.start(preset, &sounds).err().or(message);
+            message = self.likeness.start(preset, &sounds).err().map(Err).or(message);
         }
-        let message = compared.or(message);
+        let message = compared.map(Err).or(message);
         let is_stale = outcome.as_ref().is_some_and(|outcome| outcome.is_stale);
         let broken =
             sounds.broken.first().map(|first| format!("{} of your files cannot be read: {first}", sounds.broken.len()));
         self.sounds = (!is_stale).then_some(sounds);
         match outcome {
             Some(Outcome { message, is_done, compares: false, .. }) => Some((message, is_done)),
-            _ => message.or(broken).map(|message| (message, false)),
+            _ => message.or(broken.map(Err)).map(|message| (message, false)),
         }
     }
 
@@ -259,15 +270,11 @@ impl Browser {
         self.audition.strike(key, 0.75, ui.input(|input| input.time), controls.params.link());
     }
 
-    fn load_file(&mut self, controls: &mut Controls) -> String {
-        match read(self.words.trim()) {
-            Ok(playable) => {
-                self.details.open(playable.name());
-                controls.history.load(playable, controls.params, controls.host);
-                format!("loaded {}", self.words.trim())
-            }
-            Err(error) => error.to_string(),
-        }
+    fn load_file(&mut self, controls: &mut Controls) -> Said {
+        let playable = read(self.words.trim()).map_err(|error| error.to_string())?;
+        self.details.open(playable.name());
+        controls.history.load(playable, controls.params, controls.host);
+        Ok(format!("loaded {}", self.words.trim()))
     }
 }
 

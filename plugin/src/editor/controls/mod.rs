@@ -15,11 +15,25 @@ use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
 use sprung::engine::SoundingNote;
 use sprung::params::{PARAMS, Param, ParamInfo};
+use sprung::preset::Playable;
 use std::collections::HashMap;
 use std::time::Duration;
 
 /// Time between two repaints while something moves.
 pub(super) const FRAME: Duration = Duration::from_millis(16);
+
+/// What the window says of what was done, or why it could not be done.
+pub(super) type Said = Result<String, String>;
+
+/// What is to be chosen in the list of files.
+pub(super) enum Pick {
+    /// Anything that can be dropped on the window.
+    Any,
+    /// A scale or a keyboard mapping.
+    Scale,
+    /// A place to save a sound at.
+    Place(Box<Playable>),
+}
 
 /// Text that is being typed instead of a parameter's value.
 pub(super) struct Typing {
@@ -61,9 +75,13 @@ pub(super) struct Interaction {
     /// The parameter that the user has moved last, until somebody has looked.
     pub(super) touched: Option<usize>,
     /// A message about what the user has done in this pass.
-    pub(super) said: Option<String>,
+    pub(super) said: Option<Said>,
+    /// What is to be chosen in the list of files, which opens for it.
+    pub(super) pick: Option<Pick>,
     /// The knob under a source that is being dragged, in this pass.
     pub(super) aim: Option<&'static ParamInfo>,
+    /// Whether the wheel has scrolled a page since the pointer moved last.
+    pub(super) is_scrolling: bool,
     /// The place over which it is held, to show what is behind it, and since when.
     pub(super) dwell: Option<(Rect, f64)>,
     /// The values that parts had when they were switched off, by sound and section.

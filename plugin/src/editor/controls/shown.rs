@@ -52,10 +52,15 @@ impl Shown {
     /// Reads the sound again if another one was loaded.
     pub(crate) fn refresh(&mut self, params: &SprungParams) {
         if !Arc::ptr_eq(&self.loaded, &params.loaded()) {
-            let before = self.kit().map(|_| self.guide.home);
-            *self = Self::new(params);
-            before.into_iter().for_each(|key| self.follow(key));
+            self.read_again(params);
         }
+    }
+
+    /// Reads the sound again: its name, author or tags may have changed.
+    pub(crate) fn read_again(&mut self, params: &SprungParams) {
+        let before = self.kit().map(|_| self.guide.home);
+        *self = Self::new(params);
+        before.into_iter().for_each(|key| self.follow(key));
     }
 
     /// What is shown.

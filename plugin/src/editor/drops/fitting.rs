@@ -3,7 +3,7 @@
 use super::recordings::{self, Done};
 use crate::editor::background::Background;
 use crate::editor::controls::files;
-use crate::editor::controls::{Controls, Hint};
+use crate::editor::controls::{Controls, Hint, Said};
 use crate::editor::widgets::progress::{Face, PAUSE, paint};
 use egui::{Rect, Ui};
 use sprung::preset::Playable;
@@ -17,37 +17,29 @@ pub(crate) struct Fitting {
 
 impl Fitting {
     /// Begins to fit a sound to recordings. Returns a message.
-    pub(crate) fn begin(&mut self, paths: Vec<PathBuf>) -> String {
+    pub(crate) fn begin(&mut self, paths: Vec<PathBuf>) -> Said {
         if let Some(work) = &self.work {
-            return format!("{} is still being fitted: wait for it, or cancel it first", work.name);
+            return Err(format!("{} is still being fitted: wait for it, or cancel it first", work.name));
         }
-        match recordings::start(paths) {
-            Ok(work) => {
-                self.work = Some(work);
-                String::new()
-            }
-            Err(message) => message,
-        }
+        self.work = Some(recordings::start(paths)?);
+        Ok(String::new())
     }
 
     /// Shows the progress in the middle of a part of the window. When the fit ends, loads the result as one undo step
     /// and returns a message.
-    pub(crate) fn show(&mut self, ui: &Ui, within: Rect, controls: &mut Controls) -> Option<String> {
+    pub(crate) fn show(&mut self, ui: &Ui, within: Rect, controls: &mut Controls) -> Option<Said> {
         let work = self.work.as_mut()?;
         if let Some(ended) = work.take() {
             let name = std::mem::take(&mut work.name);
             self.work = None;
             ui.ctx().request_repaint();
-            return Some(match ended {
-                Ok(done) => {
-                    controls.release();
-                    controls.history.begin(controls.params);
-                    files::load(Playable::Preset(done.preset), controls.params, controls.host);
-                    controls.history.end(format!("Fit {name}"), controls.params);
-                    done.message
-                }
-                Err(message) => message,
-            });
+            return Some(ended.map(|done| {
+                controls.release();
+                controls.history.begin(controls.params);
+                files::load(Playable::Preset(done.preset), controls.params, controls.host);
+                controls.history.end(format!("Fit {name}"), controls.params);
+                done.message
+            }));
         }
         ui.ctx().request_repaint_after(PAUSE);
         let (name, share, is_ending) = (&work.name, work.share(), work.is_cancelled());

@@ -3,12 +3,17 @@
 pub(super) mod fitting;
 mod recordings;
 
-use crate::editor::controls::Controls;
+use crate::editor::controls::{Controls, Said};
 use crate::editor::pages::tuning;
 use crate::files;
 use egui::Ui;
 use sprung::preset::library::Library;
 use std::path::{Path, PathBuf};
+
+/// The endings of files that can be dropped.
+pub(super) const SOUNDS: [&str; 1] = ["toml"];
+pub(super) const SCALES: [&str; 2] = ["scl", "kbm"];
+pub(super) const RECORDINGS: [&str; 9] = ["aif", "aifc", "aiff", "flac", "mp3", "oga", "ogg", "wav", "wave"];
 
 /// The files that were dropped since the last pass.
 pub(super) fn dropped(ui: &Ui) -> Vec<PathBuf> {
@@ -21,18 +26,18 @@ fn ending(path: &Path) -> String {
 
 /// Whether the file's extension is that of a recording.
 pub(super) fn is_recording(path: &Path) -> bool {
-    ["aif", "aifc", "aiff", "flac", "mp3", "oga", "ogg", "wav", "wave"].contains(&ending(path).as_str())
+    RECORDINGS.contains(&ending(path).as_str())
 }
 
 /// Handles a dropped file that is not a recording. Returns a message.
-pub(super) fn take(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
+pub(super) fn take(path: &Path, library: Option<&Library>, controls: &mut Controls) -> Said {
     match ending(path).as_str() {
         "scl" | "kbm" => tuning::take(path, controls),
         "toml" => sound(path, library, controls),
-        _ => format!(
+        _ => Err(format!(
             "{}: expected a recording (.wav, .flac …), a preset or kit (.toml), a scale (.scl) or a keyboard mapping (.kbm)",
             path.display()
-        ),
+        )),
     }
 }
 
@@ -44,7 +49,7 @@ fn is_own(path: &Path, library: &Library) -> bool {
 }
 
 /// Loads a preset or kit. One from elsewhere is copied to the user's folder, if there is one.
-fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
+fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> Said {
     let read = files::read(path);
     let imported = read.and_then(|sound| match library.filter(|library| !is_own(path, library)) {
         Some(library) => {
@@ -54,11 +59,7 @@ fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> Str
         }
         None => Ok((sound, format!("loaded {}", path.display()))),
     });
-    match imported {
-        Ok((sound, message)) => {
-            controls.history.load(sound, controls.params, controls.host);
-            message
-        }
-        Err(error) => error.to_string(),
-    }
+    let (sound, message) = imported.map_err(|error| error.to_string())?;
+    controls.history.load(sound, controls.params, controls.host);
+    Ok(message)
 }

@@ -138,7 +138,9 @@ fn show_source(
     let named = line(ui.painter(), inside, Align2::LEFT_CENTER, name, TEXT, colour);
     if let Some(section) = drawn(source) {
         let picture = inside.with_min_x((named.right() + 10.0).max(inside.center().x)).shrink2(vec2(0.0, 5.0));
-        sections(&[section]).for_each(|section| curves::paint(ui.painter(), picture, section, controls));
+        sections(&[section]).for_each(|section| {
+            curves::paint(ui.painter(), picture, section, controls);
+        });
     }
     response.clicked()
 }

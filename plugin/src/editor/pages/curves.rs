@@ -1,10 +1,11 @@
-//! Small pictures of the combined effect of a section's parameters.
+//! Pictures of the combined effect of a section's parameters.
 
 use super::outlines;
 use crate::editor::controls::Controls;
-use crate::editor::theme::Palette;
-use egui::{Painter, Pos2, Rect, Stroke, Vec2, pos2};
-use sprung::params::{Choice as _, MalletPulse, NoiseDecay, Shape};
+use crate::editor::lamps;
+use crate::editor::theme::{Palette, SMALL};
+use crate::editor::widgets::text::line;
+use egui::{Align2, Painter, Pos2, Rect, Stroke, StrokeKind, pos2, vec2};
 use sprung::params::{PARAMS, Param, ParamInfo};
 use sprung::units::ratio_from_semitones;
 
@@ -13,58 +14,51 @@ pub(in crate::editor) const SUSTAIN: f64 = 0.2;
 /// Number of points of each curved stage.
 const POINTS: usize = 16;
 
-/// Draws the picture of a section, if it has one.
-pub(in crate::editor) fn paint(painter: &Painter, rect: Rect, section: &[ParamInfo], controls: &Controls) {
+/// Height of the line below a large picture.
+const CAPTION: f32 = 15.0;
+
+/// Draws the picture of a section, if it has one. Returns what it shows.
+pub(in crate::editor) fn paint(
+    painter: &Painter,
+    rect: Rect,
+    section: &[ParamInfo],
+    controls: &Controls,
+) -> Option<String> {
     let palette = controls.palette;
-    let value = |param: Param| controls.value(param.info());
     let first = section[0].param;
-    // A row of the section, counted from its first.
-    let row = |place: usize| &PARAMS[first as usize + place];
-    let floor = painter.round_to_pixel_center(rect.bottom());
-    let middle = painter.round_to_pixel_center(rect.center().y);
-    let above = |points: Vec<Vec2>| -> Vec<Pos2> {
-        points
-            .into_iter()
-            .map(|point| pos2(rect.left() + rect.width() * point.x, floor - rect.height() * point.y))
-            .collect()
-    };
-    let around = |points: Vec<Vec2>| -> Vec<Pos2> {
-        let half = 0.46 * rect.height();
-        points.into_iter().map(|point| pos2(rect.left() + rect.width() * point.x, middle - half * point.y)).collect()
-    };
-    let is_off = |level: Param| value(level) <= level.info().min;
-    let (points, ground, is_quiet) = match first {
-        Param::Envelope1Delay | Param::Envelope2Delay => {
-            let value = |place: usize| f64::from(controls.value(row(place)));
-            return paint_envelope(painter, rect, &value, whole(lengths(&value)), palette);
-        }
-        Param::MalletLevel => {
-            let is_impulse = MalletPulse::from_value(value(Param::MalletPulse)) == MalletPulse::Impulse;
-            let hardness = f64::from(value(Param::MalletHardness)) / 100.0;
-            let points = outlines::mallet(hardness, value(Param::MalletMass).into(), is_impulse);
-            (above(points), floor, is_off(Param::MalletLevel))
-        }
-        Param::NoiseLevel => {
-            let times =
-                [Param::NoiseAttack, Param::NoiseTime, Param::NoiseSpacing].map(|param| f64::from(value(param)));
-            let is_exponential = NoiseDecay::from_value(value(Param::NoiseDecay)) == NoiseDecay::Exponential;
-            let points = outlines::noise(times, is_exponential, value(Param::NoiseHits).max(1.0) as u32);
-            (above(points), floor, is_off(Param::NoiseLevel))
-        }
-        Param::Tune => {
-            let (semitones, curve) = (value(Param::Sweep), value(Param::SweepCurve) / 100.0);
-            (around(outlines::sweep(semitones.into(), curve.into())), middle, semitones == 0.0)
-        }
-        Param::Lfo1Rate | Param::Lfo2Rate | Param::Lfo3Rate => {
-            let (shape, start) = (Shape::from_value(controls.value(row(2))), controls.value(row(3)) / 100.0);
-            (around(outlines::oscillator(shape, start)), middle, false)
-        }
-        _ => return,
-    };
+    if matches!(first, Param::Envelope1Delay | Param::Envelope2Delay) {
+        let value = |place: usize| f64::from(controls.value(&PARAMS[first as usize + place]));
+        paint_envelope(painter, rect, &value, whole(lengths(&value)), palette);
+        return Some("envelope".to_owned());
+    }
+    let outline = outlines::of(section, &|info| controls.value(info))?;
+    let [floor, middle] = [rect.bottom(), rect.center().y].map(|y| painter.round_to_pixel_center(y));
+    let (ground, height) = if outline.is_around { (middle, 0.46 * rect.height()) } else { (floor, rect.height()) };
+    let place = |point: egui::Vec2| pos2(rect.left() + rect.width() * point.x, ground - height * point.y);
     painter.hline(rect.x_range(), ground, Stroke::new(1.0, palette.line));
     // A section that is off is drawn in grey.
+    let is_quiet = lamps::of(section[0].section).is_some_and(|lamp| !lamp.is_on(controls));
     let colour = if is_quiet { palette.muted.gamma_multiply(0.6) } else { palette.accent };
-    painter.add(egui::Shape::line(points, Stroke::new(1.5, colour)));
+    // The second line is what the first is compared with.
+    for (points, stroke) in outline.lines.into_iter().zip([Stroke::new(1.5, colour), Stroke::new(1.0, palette.muted)]) {
+        let mut points: Vec<Pos2> = points.into_iter().map(place).collect();
+        // A line segment between two equal points has no direction.
+        points.dedup_by(|next, point| (*next - *point).length() < 0.05);
+        painter.add(egui::Shape::line(points, stroke));
+    }
+    for mark in outline.marks {
+        painter.circle(place(mark), 3.0, palette.panel, Stroke::new(1.5, colour));
+    }
+    Some(outline.caption)
+}
+
+/// Draws a picture in a frame with a line below it that says what it shows; `draw` returns that, if there is anything.
+pub(super) fn frame(painter: &Painter, rect: Rect, palette: &Palette, draw: impl FnOnce(Rect) -> Option<String>) {
+    let (frame, below) = rect.split_top_bottom_at_y(rect.bottom() - CAPTION);
+    painter.rect(frame, 4.0, palette.ground, Stroke::new(1.0, palette.outline), StrokeKind::Inside);
+    if let Some(caption) = draw(frame.shrink2(vec2(8.0, 10.0))) {
+        line(painter, below, Align2::CENTER_CENTER, &caption, SMALL, palette.muted);
+    }
 }
 
 /// Draws an envelope from the values of its rows: delay, attack, hold, decay, sustain, release, curve. The width of a stage is

@@ -9,8 +9,8 @@ pub(super) mod tuning;
 mod voices;
 
 use crate::editor::body::page::BodyPage;
-use crate::editor::controls::Controls;
-use crate::editor::controls::shown::Shown;
+use crate::editor::controls::shown::{Shown, Subject};
+use crate::editor::controls::{Controls, Said};
 use crate::editor::lamps;
 use crate::editor::theme::GAP;
 use crate::editor::theme::layout::Layout;
@@ -21,6 +21,7 @@ use nice_plug_core::context::PluginApi;
 use path::Part;
 use sections::PAGES;
 use sprung::params::PARAMS;
+use sprung_picture::{Figure, small_figure};
 use tuning::TuningPage;
 
 /// The manual's page for each page, in their order.
@@ -36,7 +37,7 @@ const SECTIONS: f32 = 344.0;
 pub(super) enum Request {
     Manual,
     /// Show this message.
-    Say(String),
+    Say(Said),
 }
 
 /// The state of the pages.
@@ -46,12 +47,14 @@ pub(super) struct Pages {
     is_new: bool,
     body: BodyPage,
     tuning: TuningPage,
+    /// The picture of the body, read again only when another sound is shown.
+    figure: Option<(Subject, Figure)>,
 }
 
 impl Default for Pages {
     fn default() -> Self {
         let (body, tuning) = (BodyPage::default(), TuningPage::default());
-        Self { part: ("Mallet", 0), is_new: false, body, tuning }
+        Self { part: ("Mallet", 0), is_new: false, body, tuning, figure: None }
     }
 }
 
@@ -90,7 +93,7 @@ impl Pages {
         let request = self.path(ui, layout.path, is_preset, controls);
         let (rect, (part, page)) = (layout.sections, self.part);
         let said = match part {
-            "Model" => self.body.show(ui, rect, shown, controls),
+            "Model" => self.body.show(ui, rect, shown, controls).map(Err),
             "Devices" => {
                 devices::show(ui, rect, controls);
                 None
@@ -102,7 +105,10 @@ impl Pages {
                     left = rect.with_max_x(rect.left() + SECTIONS);
                     voices::show(ui.painter(), rect.with_min_x(left.right() + GAP), voices, controls);
                 }
-                let about = (shown.patch(), shown.guide(), is_preset);
+                let of = || small_figure(&shown.patch().modes, shown.guide().family);
+                let figure = self.figure.take().filter(|(subject, _)| *subject == shown.subject());
+                let (_, figure) = self.figure.insert(figure.unwrap_or_else(|| (shown.subject(), of())));
+                let about = (shown.patch(), shown.guide(), is_preset, &*figure);
                 sections::show(ui, left, PAGES[page], (part, std::mem::take(&mut self.is_new)), about, controls);
                 None
             }

@@ -1,18 +1,21 @@
 //! The parameters by section, some sections on each page.
 
 use super::curves;
+use crate::editor::body::face;
 use crate::editor::controls::Controls;
 use crate::editor::lamps::{self, Lamp};
+use crate::editor::play::stage;
 use crate::editor::routes::Ring;
 use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, SMALL, TITLE_HEIGHT};
 use crate::editor::widgets::choice;
 use crate::editor::widgets::knob;
 use crate::editor::widgets::text::line;
-use egui::{Align2, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
-use sprung::params::{PARAMS, ParamInfo, Unit};
+use egui::{Align2, Painter, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
+use sprung::params::{Choice as _, PARAMS, Param, ParamInfo, Space, Unit};
 use sprung::patch::Patch;
 use sprung::patch::routes::amount_param;
 use sprung::preset::Guide;
+use sprung_picture::Figure;
 
 /// The sections of each page, in the order in which sound is made.
 pub(super) const PAGES: [&[&str]; 4] = [
@@ -21,6 +24,9 @@ pub(super) const PAGES: [&[&str]; 4] = [
     &["Soundbox", "Strings", "Tremolo", "Drive", "Tone", "Space", "Output"],
     &["Voices", "Control"],
 ];
+/// Width of a picture at the left of the knobs, with the gap after it; and the least of one beside the title.
+const PICTURE: f32 = 132.0;
+const SMALLEST: f32 = 50.0;
 /// How much of the brightness is left of a part that is off.
 const OFF: f32 = 0.6;
 
@@ -58,7 +64,7 @@ pub(super) fn show(
     rect: Rect,
     names: &'static [&'static str],
     (selected, is_new): (&str, bool),
-    (patch, guide, is_preset): (&Patch, &Guide, bool),
+    (patch, guide, is_preset, figure): (&Patch, &Guide, bool, &Figure),
     controls: &mut Controls,
 ) {
     // What a route can raise is not off.
@@ -77,15 +83,25 @@ pub(super) fn show(
     let count: usize = shown.iter().map(|(section, _)| columns(section)).sum();
     let gaps = shown.len() as f32 * (2.0 * PADDING + GAP) - GAP;
     let [least, most] = CELL_WIDTH;
-    let cell_width = ((rect.width() - gaps) / count.max(1) as f32).floor().clamp(least, most);
-    let width = count as f32 * cell_width + gaps;
+    // Pictures at the left of the knobs where there is room beside knobs of a good width, the selected part's first.
+    let room = (rect.width() - gaps - count as f32 * 0.5 * (least + most)) / PICTURE;
+    let pictures = if rows > 1 { room.max(0.0) as usize } else { 0 };
+    let is_other = |(section, _): &&(Section, bool)| section[0].section != selected;
+    let (others, first): (Vec<_>, Vec<_>) =
+        shown.iter().filter(|(section, _)| has_picture(section)).partition(is_other);
+    let large: Vec<&str> = first.iter().chain(&others).take(pictures).map(|(section, _)| section[0].section).collect();
+    let aside = large.len() as f32 * PICTURE;
+    let cell_width = ((rect.width() - gaps - aside) / count.max(1) as f32).floor().clamp(least, most);
+    let width = count as f32 * cell_width + gaps + aside;
     let mut inner = ui.new_child(UiBuilder::new().id_salt("sections").max_rect(rect));
     ScrollArea::horizontal().id_salt(names).auto_shrink(false).show(&mut inner, |ui| {
         let (area, _) = ui.allocate_exact_size(vec2(width, rect.height()), egui::Sense::hover());
         let mut left = area.left();
         for (section, is_on) in shown {
             ui.set_opacity(if is_on { 1.0 } else { OFF });
-            let size = vec2(columns(section) as f32 * cell_width + 2.0 * PADDING, area.height());
+            let is_large = large.contains(&section[0].section);
+            let aside = if is_large { PICTURE } else { 0.0 };
+            let size = vec2(columns(section) as f32 * cell_width + 2.0 * PADDING + aside, area.height());
             let panel = Rect::from_min_size(pos2(left, area.top()), size);
             left = panel.right() + GAP;
             if is_new && section[0].section == selected {
@@ -95,6 +111,14 @@ pub(super) fn show(
             palette.paint_panel(ui.painter(), panel);
             let title = Rect::from_min_size(panel.min + vec2(PADDING, 2.0), vec2(size.x - PADDING, TITLE_HEIGHT - 2.0));
             line(ui.painter(), title, Align2::LEFT_CENTER, &section[0].section.to_uppercase(), SMALL, palette.muted);
+            if is_large {
+                let side = PICTURE - GAP;
+                let height = (panel.height() - TITLE_HEIGHT - PADDING).min(1.15 * side);
+                let place = Rect::from_min_size(panel.min + vec2(PADDING, TITLE_HEIGHT), vec2(side, height));
+                curves::frame(ui.painter(), place, palette, |place| {
+                    picture(ui.painter(), place, section, figure, controls)
+                });
+            }
             // A picture in the last row if it has room for one, otherwise a small one beside the title.
             let free = (columns(section) - section.len() % columns(section)) % columns(section);
             let picture = if free > 0 {
@@ -107,11 +131,41 @@ pub(super) fn show(
                 let corner = panel.right_top() + vec2(-width - PADDING, 4.0);
                 Rect::from_min_size(corner, vec2(width, TITLE_HEIGHT - 6.0))
             };
-            curves::paint(ui.painter(), picture, section, controls);
-            let grid = Rect::from_min_size(panel.min + vec2(PADDING, TITLE_HEIGHT), vec2(cell_width, CELL_HEIGHT));
+            if !is_large && picture.width() > SMALLEST {
+                curves::paint(ui.painter(), picture, section, controls);
+            }
+            let corner = panel.min + vec2(PADDING + aside, TITLE_HEIGHT);
+            let grid = Rect::from_min_size(corner, vec2(cell_width, CELL_HEIGHT));
             knobs(ui, grid, columns(section), section, (patch, guide), controls);
         }
     });
+}
+
+/// Whether a section has a large picture.
+fn has_picture(section: Section) -> bool {
+    !matches!(section[0].section, "Input" | "Voices" | "Control")
+}
+
+/// Draws the large picture of a section. Returns what it shows.
+fn picture(painter: &Painter, rect: Rect, section: Section, figure: &Figure, controls: &Controls) -> Option<String> {
+    match section[0].param {
+        Param::Decay => {
+            face::paint(painter, rect, figure, &[], None, controls.palette);
+            Some("the body".to_owned())
+        }
+        Param::Space => {
+            let (space, material) = (Param::Space.info(), Param::SpaceMaterial.info());
+            let is_room = Space::from_value(controls.value(space)) == Space::Room;
+            // Of a floor without walls, the picture has no more above than is needed.
+            let above = if is_room { 0.0 } else { 0.9 * rect.height() };
+            let (frame, floor) = (rect.expand(6.0), rect.with_min_y(rect.top() - above).expand(6.0));
+            let painter = painter.with_clip_rect(frame.intersect(painter.clip_rect()));
+            stage::paint_floor(&painter, floor, rect, controls);
+            let of = if is_room { String::new() } else { format!(" of {}", controls.text(material)) };
+            Some(format!("{}{of}", controls.text(space)))
+        }
+        _ => curves::paint(painter, rect, section, controls),
+    }
 }
 
 /// Shows the parameters of a section in columns, from a first cell on.

@@ -2,7 +2,7 @@
 
 use crate::editor::controls::gestures::load;
 use crate::editor::controls::shown::Shown;
-use crate::editor::controls::{Controls, Hint};
+use crate::editor::controls::{Controls, Hint, Pick, Said};
 use crate::editor::keyboard::grid::{Cell, KeyGrid};
 use crate::editor::theme::{GAP, PADDING, SMALL, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
@@ -39,7 +39,7 @@ impl TuningPage {
         shown: &Shown,
         down: u128,
         controls: &mut Controls,
-    ) -> Option<String> {
+    ) -> Option<Said> {
         let palette = controls.palette;
         palette.paint_panel(ui.painter(), rect);
         let inner = rect.shrink(PADDING);
@@ -52,22 +52,26 @@ impl TuningPage {
         line(ui.painter(), second, Align2::LEFT_CENTER, &format!("{steps}{mapped}"), SMALL, palette.muted);
         let mut message = None;
         let bottom = Rect::from_min_max(pos2(side.left(), side.bottom() - 22.0), side.max);
-        let field = bottom.with_max_x(bottom.right() - 54.0);
-        let edit = TextEdit::singleline(&mut self.path).id(Id::unique("scale path")).hint_text("a .scl or .kbm file");
+        let field = bottom.with_max_x(bottom.right() - 102.0);
+        let edit = TextEdit::singleline(&mut self.path).id(Id::unique("scale path")).hint_text(".scl or .kbm");
         let response = ui.put(field, edit.font(font(SMALL)).margin(vec2(4.0, 4.0)));
         name_field(&response, "Path of a scale or mapping", &self.path);
         if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter)) {
             message = Some(take(Path::new(self.path.trim()), controls));
         }
         let look = if own.is_some() { Look::Plain } else { Look::Disabled };
-        let equal = bottom.with_min_x(field.right() + 4.0);
+        let list = bottom.with_min_x(field.right() + 4.0).with_max_x(field.right() + 48.0);
+        if button(ui, list, "Open", "Open a scale or mapping", Look::Plain, palette).clicked() {
+            controls.interaction.pick = Some(Pick::Scale);
+        }
+        let equal = bottom.with_min_x(list.right() + 4.0);
         if button(ui, equal, "Equal", "Tune to equal temperament", look, palette).clicked() {
             set(None, "equal temperament", controls);
-            message = Some("tuned to equal temperament".to_owned());
+            message = Some(Ok("tuned to equal temperament".to_owned()));
         }
         let help = Rect::from_min_max(second.left_bottom() + vec2(0.0, 6.0), pos2(side.right(), field.top() - 4.0));
         if help.height() > 40.0 {
-            let text = "Drop a Scala scale (.scl) or a keyboard mapping (.kbm) anywhere on the window, or type its whole path. The scale becomes a part of the sound.";
+            let text = "Drop a Scala scale (.scl) or a keyboard mapping (.kbm) anywhere on the window, or choose it with Open. The scale becomes a part of the sound.";
             paragraph(ui.painter(), help, text, SMALL, palette.muted);
         }
         let a4 = f64::from(controls.value(Param::Tuning.info()));
@@ -107,7 +111,7 @@ fn about(own: &OwnTuning) -> (String, String) {
 }
 
 /// Tunes the sound by a scale or mapping file. Returns a message.
-pub(crate) fn take(path: &Path, controls: &mut Controls) -> String {
+pub(crate) fn take(path: &Path, controls: &mut Controls) -> Said {
     let read = || -> sprung::Result<String> {
         let mut text = String::new();
         let name = path.display().to_string();
@@ -119,16 +123,13 @@ pub(crate) fn take(path: &Path, controls: &mut Controls) -> String {
         }
         Ok(text)
     };
-    let failed = |error: String| format!("{}: {error}", path.display());
+    let failed = |error: String| Err(format!("{}: {error}", path.display()));
     let is_map = match path.extension().and_then(|ending| ending.to_str()) {
         Some(ending) if ending.eq_ignore_ascii_case("scl") => false,
         Some(ending) if ending.eq_ignore_ascii_case("kbm") => true,
         _ => return failed("expected the whole path of a .scl or .kbm file".to_owned()),
     };
-    let text = match read() {
-        Ok(text) => text,
-        Err(error) => return error.to_string(),
-    };
+    let text = read().map_err(|error| error.to_string())?;
     let state = controls.params.state();
     let mut playable = state.playable;
     let before = playable.presets_mut().into_iter().find_map(|preset| preset.tuning.clone());
@@ -142,7 +143,7 @@ pub(crate) fn take(path: &Path, controls: &mut Controls) -> String {
         Ok(own) => {
             let name = about(&own).0;
             set(Some(own), &format!("tuning {name}"), controls);
-            format!("tuned to {name}")
+            Ok(format!("tuned to {name}"))
         }
         Err(error) => failed(error.to_string()),
     }

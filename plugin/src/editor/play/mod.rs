@@ -2,7 +2,7 @@
 
 mod hands;
 mod movers;
-mod stage;
+pub(super) mod stage;
 mod things;
 
 use crate::editor::body::view::{BodyView, velocity};
@@ -114,6 +114,7 @@ impl PlayPage {
         }
         let text = match (shown.preset(), self.was_played) {
             (None, _) => "A kit: each key has a body of its own. A click strikes this one.".to_owned(),
+            _ if !self.body.has_place(shown, controls) => format!("Strike it anywhere: {caption}."),
             (_, false) => "Click where it is to be struck.".to_owned(),
             (_, true) => caption,
         };

@@ -21,7 +21,7 @@ pub(super) fn place_of_body(stage: Rect, middle: Rect) -> Rect {
 }
 
 /// Paints the floor, with waves as far as the space is mixed in.
-pub(super) fn paint_floor(painter: &Painter, stage: Rect, middle: Rect, controls: &Controls) {
+pub(in crate::editor) fn paint_floor(painter: &Painter, stage: Rect, middle: Rect, controls: &Controls) {
     let palette = controls.palette;
     let far = stage.top() + HORIZON * stage.height();
     let edge = 0.36 * stage.width();
@@ -37,7 +37,7 @@ pub(super) fn paint_floor(painter: &Painter, stage: Rect, middle: Rect, controls
     ]);
     floor.add_triangle(0, 1, 2);
     floor.add_triangle(0, 2, 3);
-    let painter = painter.with_clip_rect(stage.shrink(1.0));
+    let painter = painter.with_clip_rect(stage.shrink(1.0).intersect(painter.clip_rect()));
     painter.add(floor);
     painter.line_segment([pos2(left, far), pos2(right, far)], Stroke::new(1.0, palette.line));
     let space = controls.value(Param::Space.info());

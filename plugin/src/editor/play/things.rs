@@ -6,11 +6,13 @@ use crate::editor::body::origin::OriginShown;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{GAP, RADIUS, SMALL};
+use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
-use crate::editor::widgets::text::line;
+use crate::editor::widgets::text::{line, paragraph};
 use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
+use sprung::preset::Family;
 use sprung::sound::bodies::{Body, MATERIALS, Model};
-use sprung_picture::{Figure, Origin, model_name, tint};
+use sprung_picture::{Figure, Origin, model_name, suggested_model, tint};
 
 /// Models with tiles, and their names there. All others are in the list below.
 const TILES: [(&str, &str); 9] = [
@@ -53,17 +55,30 @@ impl Things {
             let model = |id| Model::find(id).cloned().unwrap_or(Model::String);
             self.figures = TILES.iter().map(|(id, _)| Figure::small(&Body::new(model(id)))).collect();
         }
+        let family = shown.guide().family;
         let (changed, what) = if is_tall {
-            self.tiles(ui, rect, &origin, controls)?
+            self.tiles(ui, rect, &origin, family, controls)?
         } else {
             let model = model_field(ui, rect.with_max_y(rect.top() + 22.0), &origin, controls);
             let below = rect.with_min_y(rect.top() + 28.0).with_max_y(rect.top() + 50.0);
-            model.or_else(|| material_field(ui, below, &origin, controls))?
+            let offered = below.translate(vec2(0.0, 28.0));
+            let other = match origin {
+                Origin::Table => offer(ui, below.union(offered), &origin, family, controls),
+                _ => material_field(ui, below, &origin, controls),
+            };
+            model.or(other)?
         };
         Some(BodyEdit::make(&origin, changed, what, shown.loaded(), controls))
     }
 
-    fn tiles(&self, ui: &Ui, rect: Rect, origin: &Origin, controls: &mut Controls) -> Option<(Origin, String)> {
+    fn tiles(
+        &self,
+        ui: &Ui,
+        rect: Rect,
+        origin: &Origin,
+        family: Option<Family>,
+        controls: &mut Controls,
+    ) -> Option<(Origin, String)> {
         let palette = controls.palette;
         let mut top = rect.top();
         let mut next = |height: f32| {
@@ -94,9 +109,11 @@ impl Things {
             }
         }
         picked = model_field(ui, next(20.0), origin, controls).or(picked);
-        let Some(body) = origin.body() else { return picked };
         next(2.0);
         line(ui.painter(), next(14.0), Align2::LEFT_CENTER, "What it is made of", SMALL, palette.muted);
+        let Some(body) = origin.body() else {
+            return offer(ui, next(80.0), origin, family, controls).or(picked);
+        };
         let pitch = rect.width() / discs as f32;
         let rows = next(2.0 * pitch);
         for (place, id) in DISCS.into_iter().enumerate() {
@@ -123,6 +140,27 @@ impl Things {
         }
         material_field(ui, next(20.0), origin, controls).or(picked)
     }
+}
+
+/// Says what a table of modes lacks, and offers to put the body in its place as which it is drawn.
+fn offer(
+    ui: &Ui,
+    rect: Rect,
+    origin: &Origin,
+    family: Option<Family>,
+    controls: &mut Controls,
+) -> Option<(Origin, String)> {
+    let palette = controls.palette;
+    let (id, model) = suggested_model(family);
+    let name = model_name(id);
+    let text = "Modes alone, without a material or a place to strike. Choose a shape:";
+    let height = paragraph(ui.painter(), rect, text, SMALL, palette.muted);
+    let place = rect.with_min_y(rect.top() + height + GAP / 2.0).with_max_y(rect.top() + height + GAP / 2.0 + 22.0);
+    let response = button(ui, place, &format!("Make it a {name}"), "Choose a shape", Look::Main, palette);
+    if response.hovered() {
+        *controls.hint = Hint::new("Choose a shape", format!("A {name} takes the place of the table of modes."));
+    }
+    response.clicked().then(|| (origin.with_model(false, Some(&model)), format!("model {name}")))
 }
 
 /// A picture to click, which is chosen or not.

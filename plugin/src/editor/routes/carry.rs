@@ -1,7 +1,7 @@
 //! Sources that are dragged to knobs, of any face, which they then modulate. egui keeps what is dragged.
 
 use super::{AMOUNT, add, source_name};
-use crate::editor::controls::Controls;
+use crate::editor::controls::{Controls, Said};
 use crate::editor::theme::RADIUS;
 use crate::editor::widgets::carried;
 use egui::{DragAndDrop, Rect, Stroke, StrokeKind, Ui};
@@ -39,7 +39,7 @@ fn is_over(ui: &Ui, rect: Rect) -> bool {
 }
 
 /// Shows the source at the pointer, and makes a route when it is let go over a knob. To be called after all knobs. Returns a message.
-pub(in crate::editor) fn follow(ui: &Ui, guide: &Guide, controls: &mut Controls) -> Option<String> {
+pub(in crate::editor) fn follow(ui: &Ui, guide: &Guide, controls: &mut Controls) -> Option<Said> {
     let aim = controls.interaction.aim.take();
     let Some(source) = DragAndDrop::payload::<Source>(ui.ctx()) else {
         controls.interaction.dwell = None;

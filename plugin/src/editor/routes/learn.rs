@@ -1,7 +1,7 @@
 //! Routes that are learnt: what the user moves next modulates a parameter.
 
 use crate::editor::binding;
-use crate::editor::controls::{Controls, Learning};
+use crate::editor::controls::{Controls, Learning, Said};
 use crate::editor::routes::add;
 use egui::{Key, Ui};
 use sprung::params::ParamInfo;
@@ -22,12 +22,12 @@ pub(crate) fn begin(info: &'static ParamInfo, controls: &mut Controls) {
 }
 
 /// Checks whether a controller was moved, and makes a route from it. Returns a message.
-pub(crate) fn follow(ui: &Ui, controls: &mut Controls) -> Option<String> {
+pub(crate) fn follow(ui: &Ui, controls: &mut Controls) -> Option<Said> {
     let learning = controls.interaction.learning.as_mut()?;
     let info = learning.info;
     if ui.input(|input| input.key_pressed(Key::Escape)) {
         controls.interaction.learning = None;
-        return Some("nothing was learnt".to_owned());
+        return Some(Ok("nothing was learnt".to_owned()));
     }
     ui.ctx().request_repaint_after(PAUSE);
     let (count, moved) = controls.params.link().telemetry.moved();
@@ -35,22 +35,22 @@ pub(crate) fn follow(ui: &Ui, controls: &mut Controls) -> Option<String> {
         let is_prompted = std::mem::replace(&mut learning.is_prompted, true);
         return (!is_prompted).then(|| {
             let sources = "wheel, pitch wheel, pressure, breath, expression or controller 74";
-            format!("{}: move what is to modulate it ({sources}); Escape gives up", info.name)
+            Ok(format!("{}: move what is to modulate it ({sources}); Escape gives up", info.name))
         });
     }
     let moved = moved?;
     let Some(source) = moved.source() else {
-        return Some(format!(
+        return Some(Err(format!(
             "{moved} is no source of routes: expected controller 1 (wheel), 2 (breath), 11 (expression), 74 (timbre), the \
              pitch wheel or pressure"
-        ));
+        )));
     };
     controls.interaction.learning = None;
     Some(learn(source, info, controls))
 }
 
 /// Adds a route from a source. Its amount moves the knob to the end of its travel. Returns a message.
-fn learn(source: Source, info: &'static ParamInfo, controls: &mut Controls) -> String {
+fn learn(source: Source, info: &'static ParamInfo, controls: &mut Controls) -> Said {
     let position = controls.position(info);
     let travel = if 1.0 - position >= LEAST { 1.0 - position } else { -position };
     add(source, info, (100.0 * travel).round(), controls)

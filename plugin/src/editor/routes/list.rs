@@ -51,13 +51,20 @@ pub(in crate::editor) fn show(
     let inner = rect.shrink2(vec2(PADDING, 0.0));
     let title = Rect::from_min_size(inner.min + vec2(0.0, 2.0), vec2(inner.width(), TITLE_HEIGHT - 2.0));
     line(ui, title, "WHAT MOVES WHAT", SMALL, palette.muted);
-    let rows = ((rect.height() - TITLE_HEIGHT - PADDING / 2.0) / ROW).max(1.0) as usize;
+    let visible = ((rect.height() - TITLE_HEIGHT - PADDING / 2.0) / ROW).max(1.0) as usize;
+    // As many columns as the rows need; where fewer fit, the rows are scrolled.
+    let most = ((inner.width() + 2.0 * GAP) / (LEAST + 2.0 * GAP)).max(1.0) as usize;
+    let rows = visible.max(MAX_ROUTES.div_ceil(most));
     let columns = MAX_ROUTES.div_ceil(rows);
     let gaps = (columns - 1) as f32 * 2.0 * GAP;
-    let width = ((inner.width() - gaps) / columns as f32).max(LEAST);
-    let mut inner_ui = ui.new_child(UiBuilder::new().id_salt("routes").max_rect(inner.with_min_y(title.bottom())));
-    ScrollArea::horizontal().auto_shrink(false).show(&mut inner_ui, |ui| {
-        let size = vec2(columns as f32 * width + gaps, rows as f32 * ROW);
+    let scroll_bar = if rows > visible { 2.0 * GAP } else { 0.0 };
+    let width = (inner.width() - gaps - scroll_bar) / columns as f32;
+    let below = Rect::from_min_max(title.left_bottom(), inner.max - vec2(0.0, PADDING / 2.0));
+    let mut inner_ui = ui.new_child(UiBuilder::new().id_salt("routes").max_rect(below));
+    // That there are more must be seen.
+    inner_ui.spacing_mut().scroll.dormant_handle_opacity = 0.6;
+    ScrollArea::vertical().auto_shrink(false).show(&mut inner_ui, |ui| {
+        let size = vec2(inner.width() - scroll_bar, rows as f32 * ROW);
         let (area, _) = ui.allocate_exact_size(size, Sense::hover());
         for place in 0..MAX_ROUTES {
             let (column, row) = (place / rows, place % rows);

@@ -4,8 +4,8 @@ pub(super) mod carry;
 pub(super) mod learn;
 pub(super) mod list;
 
-use crate::editor::controls::Controls;
 use crate::editor::controls::gestures::load;
+use crate::editor::controls::{Controls, Said};
 use crate::loaded::positions_of;
 use crate::state::State;
 use egui::{Id, Popup, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo};
@@ -135,18 +135,19 @@ pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
 }
 
 /// Adds a route from a source to a parameter, unless there is one. Returns a message.
-#[must_use]
-fn add(source: Source, info: &'static ParamInfo, amount: f32, controls: &mut Controls) -> String {
-    let Playable::Preset(preset) = controls.params.state().playable else { return OF_KITS.to_owned() };
+fn add(source: Source, info: &'static ParamInfo, amount: f32, controls: &mut Controls) -> Said {
+    let Playable::Preset(preset) = controls.params.state().playable else { return Err(OF_KITS.to_owned()) };
     let routes = &preset.patch.routes;
     let name = source_name(source, &preset.guide);
     if let Some((place, _)) = routes.iter().find(|(_, route)| route.source == source && route.destination == info.param)
     {
-        return format!("{name} modulates {} already: route {}", info.name, place + 1);
+        return Err(format!("{name} modulates {} already: route {}", info.name, place + 1));
     }
-    let Some(place) = (0..MAX_ROUTES).find(|place| routes.get(*place).is_none()) else { return ALL_TAKEN.to_owned() };
+    let Some(place) = (0..MAX_ROUTES).find(|place| routes.get(*place).is_none()) else {
+        return Err(ALL_TAKEN.to_owned());
+    };
     change(place, Some(Route::linear(source, info.param)), Some(amount), controls);
-    format!("{name} modulates {}: route {}", info.name, place + 1)
+    Ok(format!("{name} modulates {}: route {}", info.name, place + 1))
 }
 
 fn sources(ui: &mut Ui, guide: &Guide) -> Option<Source> {

@@ -7,7 +7,7 @@ use crate::editor::controls::history::History;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
 use crate::params::SprungParams;
-use egui::{Event, Key, Role};
+use egui::{Event, Key, Modifiers, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use sprung::params::Param;
 use sprung::preset::library::Library;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
 impl Stage {
-    fn type_text(&mut self, text: &str) {
+    pub(super) fn type_text(&mut self, text: &str) {
         self.harness.event(Event::Text(text.to_owned()));
         self.harness.run_steps(3);
     }
@@ -31,6 +31,9 @@ fn pictures_of_the_browser_are_as_accepted() {
         stage.button("Favourite Marimba");
         compare(name, &mut stage.harness);
     }
+    let mut stage = stage("Marimba", LEAST_SIZE, 1.0, Theme::HighContrast);
+    stage.button("Save");
+    compare("save-least", &mut stage.harness);
     finish();
 }
 
@@ -143,6 +146,38 @@ fn save_is_a_name_and_enter() {
     stage.harness.run_steps(3);
     assert!(stage.harness.get_by_role_and_label(Role::TextInput, "Name to save under").is_focused());
     assert_eq!((stage.params.name().as_str(), names(&library).len()), ("Glass", 2));
+}
+
+#[test]
+fn what_is_made_of_a_factory_sound_is_ones_own_with_ones_own_tags() {
+    let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    let library = Library::at(stage.folder.path());
+    let fill = |stage: &mut Stage, field: &str, text: &str| {
+        stage.harness.get_by_role_and_label(Role::TextInput, field).focus();
+        stage.harness.run_steps(2);
+        stage.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        stage.harness.run_steps(1);
+        stage.type_text(text);
+    };
+    for (name, author) in [("Mine", "Ada"), ("Mine Too", "")] {
+        stage.button("Save");
+        stage.type_text(name);
+        if !author.is_empty() {
+            fill(&mut stage, "Author of the saved sound", author);
+            fill(&mut stage, "Tags of the saved sound", "mallet, soft , ");
+        }
+        stage.harness.key_press(Key::Enter);
+        stage.harness.run_steps(3);
+        assert!(stage.harness.query_by_label("Search").is_none(), "it is saved");
+        let entry = library.entries().into_iter().map(|entry| entry.playable.unwrap()).find(|own| own.name() == name);
+        let own = entry.unwrap();
+        // The second time, a factory sound is loaded again, and the author of the user's other sound is proposed.
+        assert_eq!(own.author(), "Ada");
+        assert_eq!(own.tags().contains(&"soft".to_owned()), !author.is_empty(), "{:?}", own.tags());
+        stage.button("Next sound");
+        assert_eq!(stage.params.state().playable.author(), "Sprung");
+    }
+    stage.harness.get_by_label("Browse");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::fake_host::Call;
 use super::pictures::{Stage, stage};
-use crate::editor::theme::{SIZE, Theme};
+use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::widgets::knob::face_in;
 use crate::marks::{Automation, Mapping};
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Role, pos2, vec2};
@@ -45,7 +45,7 @@ impl Stage {
         self.steps(&[Event::ModifiersChanged(Modifiers::NONE)]);
     }
 
-    fn click(&mut self, pos: Pos2) {
+    pub(super) fn click(&mut self, pos: Pos2) {
         let events =
             [Event::PointerMoved(pos), self.press(pos, true, Modifiers::NONE), self.press(pos, false, Modifiers::NONE)];
         self.steps(&events);
@@ -95,24 +95,52 @@ fn shift_is_ten_times_finer() {
     assert!((coarse / fine - 10.0).abs() < 0.5, "{coarse} {fine}");
 }
 
+/// A turn of the wheel by some lines.
+fn wheel(lines: f32) -> Event {
+    Event::MouseWheel {
+        unit: MouseWheelUnit::Line,
+        delta: vec2(0.0, lines),
+        modifiers: Modifiers::NONE,
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Unknown,
+    }
+}
+
 #[test]
 fn the_wheel_turns_and_a_double_click_resets() {
     let mut stage = Stage::new();
     let knob = stage.at("Mallet speed");
     let before = stage.value(Param::MalletSpeed);
-    let wheel = Event::MouseWheel {
-        unit: MouseWheelUnit::Line,
-        delta: vec2(0.0, 2.0),
-        modifiers: Modifiers::NONE,
-        phase: egui::TouchPhase::Move,
-        source: egui::MouseWheelSource::Unknown,
-    };
-    stage.steps(&[Event::PointerMoved(knob), wheel]);
+    stage.steps(&[Event::PointerMoved(knob), wheel(2.0)]);
     assert!((stage.value(Param::MalletSpeed) - before - 2.0).abs() < 1e-3, "two steps of 1 %");
     stage.click(knob);
     stage.click(knob);
     assert_eq!(stage.value(Param::MalletSpeed), Param::MalletSpeed.info().default);
     assert_eq!(stage.host.calls().iter().filter(|calls| matches!(calls, Call::Begin(_))).count(), 2);
+}
+
+#[test]
+fn a_wheel_that_scrolls_a_page_turns_no_knob_until_the_pointer_rests_on_one() {
+    // There the page is wider than the window.
+    let mut stage = stage("Church Bell", LEAST_SIZE, 1.0, Theme::Dark);
+    let value = |stage: &Stage| stage.value(Param::MalletSpeed);
+    let left = |stage: &Stage| stage.at("Mallet speed").x;
+    let turn = |stage: &mut Stage, lines: f32| {
+        stage.harness.event(wheel(lines));
+        stage.harness.run_steps(40);
+    };
+    let (before, at) = (value(&stage), stage.at("Mallet speed"));
+    stage.harness.event(Event::PointerMoved(at));
+    stage.harness.step();
+    turn(&mut stage, -1.0);
+    let scrolled = left(&stage);
+    assert!(scrolled < at.x && value(&stage) == before, "{scrolled} {at}");
+    turn(&mut stage, 1.0);
+    assert_eq!((left(&stage), value(&stage)), (at.x, before), "it goes on scrolling");
+    stage.harness.event(Event::PointerMoved(at + vec2(1.0, 0.0)));
+    stage.harness.run_steps(40);
+    turn(&mut stage, 1.0);
+    assert!(left(&stage) == at.x && value(&stage) > before, "now the knob is meant");
 }
 
 #[test]

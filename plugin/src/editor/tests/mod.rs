@@ -15,6 +15,7 @@ mod mode_edits;
 mod motion;
 mod moving;
 mod paging;
+mod picking;
 mod pictures;
 mod playing;
 mod random_events;

@@ -48,6 +48,16 @@ impl Stage {
 }
 
 #[test]
+fn no_route_is_cut_off_at_the_side() {
+    let stage = at("Church Bell", LEAST_SIZE, Theme::Dark);
+    for place in 1..=MAX_ROUTES {
+        let name = format!("Route {place}: ");
+        let route = stage.harness.get_by_label_contains(&name);
+        assert!(route.rect().right() < LEAST_SIZE[0] as f32, "{place}: {:?}", route.rect());
+    }
+}
+
+#[test]
 fn pictures_of_the_face_are_as_accepted() {
     for (theme, size, name) in [
         (Theme::Dark, SIZE, "motion"),

@@ -192,6 +192,23 @@ fn pictures_of_every_page_of_high_contrast_are_as_accepted() {
 }
 
 #[test]
+fn pictures_of_parts_that_are_switched_on_are_as_accepted() {
+    for (sound, lamps, name) in
+        [("Church Bell", &["Tremolo", "Drive", "Space"][..], "parts-behind"), ("Clarinet", &["Bow"], "parts-before")]
+    {
+        let mut stage = stage(sound, SIZE, 1.0, Theme::Dark);
+        for lamp in lamps {
+            stage.harness.get_by_role_and_label(egui::Role::CheckBox, lamp).click();
+            stage.harness.run_steps(3);
+            stage.harness.get_by_role_and_label(egui::Role::Tab, lamp).click();
+            stage.harness.run_steps(3);
+        }
+        compare_page(name, &mut stage.harness);
+    }
+    finish();
+}
+
+#[test]
 fn pictures_are_small() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/pictures");
     let sizes = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().metadata().unwrap().len());

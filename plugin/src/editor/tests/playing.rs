@@ -5,7 +5,8 @@ use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::window::Face;
 use crate::link::Touch;
-use egui::{Key, Modifiers, Role};
+use crate::loaded::Loaded;
+use egui::{Event, Key, Modifiers, PointerButton, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
 use sprung::params::Param;
 use sprung_picture::Origin;
@@ -59,6 +60,7 @@ fn pictures_of_the_page_are_as_accepted() {
             _ => compare_small(name, 2, &mut stage.harness),
         }
     }
+    compare_small("play-marimba", 2, &mut facing(Face::Play, "Marimba", SIZE, 1.0, Theme::Dark).harness);
     let mut band = playing("Tam-Tam");
     band.strike_at(48, 1.0);
     band.passes(30);
@@ -88,11 +90,24 @@ fn a_body_that_is_clicked_sounds() {
 #[test]
 fn a_click_within_one_pass_and_a_kit_sound_too() {
     let mut band = playing("Church Bell");
-    let place = band.rect("Struck body").center();
-    band.press(place, true);
-    band.press(place, false);
+    let place = band.rect("Struck body").center() + vec2(30.0, 0.0);
+    let before = band.stage.params.loaded();
+    band.stage.harness.event(Event::PointerMoved(place));
+    for pressed in [true, false] {
+        let modifiers = Modifiers::NONE;
+        band.stage.harness.event(Event::PointerButton {
+            pos: place,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers,
+        });
+    }
     band.passes(3);
     assert_eq!(band.strikes(), 1);
+    let strike = |loaded: &Loaded| Origin::of(&loaded.kit.sounds()[0].patch().modes).body().map(|body| body.strike);
+    assert_ne!(strike(&band.stage.params.loaded()), strike(&before), "and the place has moved");
+    band.undo();
+    assert_eq!(strike(&band.stage.params.loaded()), strike(&before));
     let mut band = playing("Acoustic Kit");
     let place = band.rect("Strike").center();
     band.press(place, true);
@@ -117,6 +132,20 @@ fn another_body_and_another_material_are_heard_and_undone_one_by_one() {
     assert_eq!(band.thing(), ["glass", material]);
     band.undo();
     assert_eq!(band.thing()[0], bell);
+}
+
+#[test]
+fn a_table_of_modes_says_what_it_lacks_and_becomes_the_body_that_is_offered() {
+    for size in [SIZE, LEAST_SIZE] {
+        let mut band = Band::of(facing(Face::Play, "Marimba", size, 1.0, Theme::Dark));
+        assert!(band.stage.harness.query_by_label("Struck body").is_none(), "it knows no place");
+        band.click(Role::Button, "Choose a shape");
+        assert_eq!((band.thing(), band.strikes()), (["marimba", "rosewood"], 1));
+        band.rect("Struck body");
+        assert!(band.stage.harness.query_by_label("Choose a shape").is_none());
+        band.undo();
+        assert_eq!(band.thing(), [""; 2]);
+    }
 }
 
 #[test]

@@ -155,6 +155,23 @@ fn the_keyboard_plays_what_is_clicked_and_louder_below() {
 }
 
 #[test]
+fn the_limiters_work_is_told_beside_the_level() {
+    let mut band = Band::new("Church Bell", SIZE, Theme::Dark);
+    band.synth.handle(&Played {
+        frame: 0,
+        channel: 0,
+        kind: EventKind::Param { param: Param::Gain, value: Param::Gain.info().max },
+    });
+    band.strike(&[48, 52, 55, 60, 64, 67, 72]);
+    band.passes(6);
+    let meter = band.rect("Level").center();
+    band.event(Event::PointerMoved(meter));
+    band.passes(60);
+    assert!(band.stage.params.link().telemetry.snapshot().lowered > 1.0);
+    band.stage.harness.get_by_label_contains("the limiter takes");
+}
+
+#[test]
 fn a_dragged_mode_changes_sounds_and_comes_back() {
     let mut band = Band::new("init", SIZE, Theme::Dark);
     let before = band.stage.params.state();

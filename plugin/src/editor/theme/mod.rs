@@ -208,6 +208,8 @@ impl Theme {
                 style.text_styles.insert(text, font(TEXT));
             }
             style.interaction.selectable_labels = false;
+            // A wheel has one direction, and a page that can be scrolled has one.
+            style.always_scroll_the_only_direction = true;
             style.interaction.tooltip_delay = 0.6;
         });
     }

@@ -67,6 +67,8 @@ pub(super) struct Header<'a> {
     pub(super) locked: &'a BTreeSet<&'static str>,
     /// Levels of left and right, as shares of the meter's length.
     pub(super) levels: [f32; 2],
+    /// By how many decibels the limiter lowers the sound.
+    pub(super) lowered: f32,
 }
 
 pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Controls) -> Option<Request> {
@@ -148,7 +150,13 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
     request = request.or(view_menu(ui, view, header.view, palette));
     let meter = Rect::from_min_max(pos2(left + GAP, rect.top()), rect.max);
     if meter.width() >= 40.0 {
-        meter::paint(ui.painter(), meter.with_min_x(meter.left().max(meter.right() - 150.0)), header.levels, palette);
+        let meter = meter.with_min_x(meter.left().max(meter.right() - 150.0));
+        meter::paint(ui.painter(), meter, header.levels, header.lowered, palette);
+        let response = ui.interact(meter, Id::unique("meter"), Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, "Level"));
+        if response.hovered() {
+            *controls.hint = Hint::new("Level", meter::figures(header.levels, header.lowered));
+        }
     }
     request
 }

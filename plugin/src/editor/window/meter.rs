@@ -6,6 +6,8 @@ use sprung::units::db_from_gain;
 
 /// Decibels below full scale that the bars show.
 const RANGE: f32 = 60.0;
+/// The least number of decibels that the limiter takes off to be shown.
+const LEAST: f32 = 0.1;
 /// How fast the bars fall, as a share of their length per second.
 const FALL: f32 = 0.7;
 
@@ -28,7 +30,24 @@ impl Meter {
     }
 }
 
-pub(super) fn paint(painter: &Painter, rect: Rect, levels: [f32; 2], palette: &Palette) {
+/// Levels in figures, and by how many decibels the limiter lowers them.
+pub(super) fn figures(levels: [f32; 2], lowered: f32) -> String {
+    let figure = |level: f32| match RANGE * (level - 1.0) {
+        db if level > 0.0 => format!("{db:.1} dB"),
+        _ => "silent".to_owned(),
+    };
+    let [left, right] = levels.map(figure);
+    let limited = if lowered >= LEAST { format!("; the limiter takes {lowered:.1} dB off") } else { String::new() };
+    format!("left {left}, right {right}; 0 dB is full scale{limited}")
+}
+
+pub(super) fn paint(painter: &Painter, rect: Rect, levels: [f32; 2], lowered: f32, palette: &Palette) {
+    if lowered >= LEAST {
+        // From the right, where the level would be: a quarter of the bars is 15 dB.
+        let length = (lowered / RANGE).min(1.0) * rect.width();
+        let line = Rect::from_center_size(rect.center(), vec2(rect.width(), 2.0));
+        painter.rect_filled(line.with_min_x(rect.right() - length), 0.0, palette.text);
+    }
     for (level, offset) in levels.into_iter().zip([-4.5, 4.5]) {
         let centre = pos2(rect.center().x, rect.center().y + offset);
         let bar = Rect::from_center_size(centre, vec2(rect.width(), 6.0));
@@ -56,5 +75,12 @@ mod tests {
         assert!((left - 0.93).abs() < 1e-6 && meter.is_moving());
         assert!(meter.levels([1.5; 2], 0.1)[0] > 1.0, "above full scale");
         assert!(!meter.levels([f32::NAN; 2], 0.1)[1].is_nan());
+    }
+
+    #[test]
+    fn levels_are_told_in_decibels() {
+        let levels = Meter::default().levels([0.5, 0.0], 0.02);
+        assert_eq!(figures(levels, 0.0), "left -6.0 dB, right silent; 0 dB is full scale");
+        assert!(figures(levels, 2.04).ends_with("; the limiter takes 2.0 dB off"));
     }
 }

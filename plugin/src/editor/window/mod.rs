@@ -11,7 +11,7 @@ use crate::editor::binding;
 use crate::editor::browser::Browser;
 use crate::editor::controls::history::History;
 use crate::editor::controls::shown::Shown;
-use crate::editor::controls::{Controls, FRAME, Interaction};
+use crate::editor::controls::{Controls, FRAME, Interaction, Said};
 use crate::editor::displays::Displays;
 use crate::editor::drops;
 use crate::editor::drops::fitting::Fitting;
@@ -24,13 +24,14 @@ use crate::editor::manual::Manual;
 use crate::editor::modes::ModesView;
 use crate::editor::motion::MotionPage;
 use crate::editor::pages::{self, Pages};
+use crate::editor::picker::{Picked, Picker};
 use crate::editor::play::PlayPage;
 use crate::editor::routes::{carry, learn};
 use crate::editor::theme::layout::Layout;
 use crate::editor::theme::{Theme, install_fonts};
 use crate::params::SprungParams;
 use crate::state::State;
-use egui::{Key, Ui};
+use egui::{Event, Key, Ui};
 pub(super) use header::Face;
 use header::{Header, Request};
 use meter::Meter;
@@ -50,6 +51,7 @@ const LONGEST: f32 = 0.25;
 enum Over {
     Browser,
     Manual,
+    Files,
 }
 
 /// An open window.
@@ -77,7 +79,10 @@ pub(super) struct Window {
     kit: KitPage,
     manual: Manual,
     fitting: Fitting,
+    picker: Picker,
     over: Option<Over>,
+    /// What was shown before the list of files.
+    under: Option<Over>,
     /// The other one of the two versions of the sound, and whether it is changed ([`History::is_changed`]).
     other: Option<(State, bool)>,
     is_b: bool,
@@ -90,7 +95,7 @@ pub(super) struct Window {
     loads: u64,
     /// The theme that was last applied to egui's own widgets.
     applied: Option<Theme>,
-    message: String,
+    message: Said,
     line: StatusLine,
 }
 
@@ -123,7 +128,9 @@ impl Window {
             kit: KitPage::default(),
             manual: Manual::default(),
             fitting: Fitting::default(),
+            picker: Picker::default(),
             over: None,
+            under: None,
             other: None,
             is_b: false,
             context: None,
@@ -131,7 +138,7 @@ impl Window {
             now: 0.0,
             loads,
             applied: None,
-            message: String::new(),
+            message: Ok(String::new()),
             line: StatusLine::default(),
         }
     }
@@ -145,7 +152,7 @@ impl Window {
     pub(super) fn open(&mut self, host: GuiContext) {
         self.host = Some(host);
         let read = self.params.read_controllers(self.browser.library());
-        self.message = read.err().map_or_else(String::new, |error| error.to_string());
+        self.message = read.map(|()| String::new()).map_err(|error| error.to_string());
         self.applied = None;
     }
 
@@ -178,6 +185,8 @@ impl Window {
         if let Some(newest) = notes.first() {
             self.shown.follow(newest.key);
         }
+        let has_moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO);
+        self.interaction.is_scrolling &= !has_moved;
         let mut hint = None;
         let name = params.name();
         let mut controls = Controls {
@@ -200,6 +209,7 @@ impl Window {
             view,
             locked: &self.locked,
             levels,
+            lowered: if is_silent { 0.0 } else { snapshot.lowered },
         };
         let request = header::show(ui, layout.header, &header, &mut controls);
         let down = (0..16).fold(0, |down, channel| down | telemetry.keys(channel));
@@ -219,12 +229,13 @@ impl Window {
         if seen != Some(Face::Motion) {
             self.motion.leave();
         }
-        let mut read = None;
+        let (mut read, mut picked) = (None, Vec::new());
         match self.over {
             Some(Over::Browser) => {
                 if let Some((message, is_done)) = self.browser.show(ui, layout.page(), &mut controls) {
                     self.message = message;
                     self.over = self.over.filter(|_| !is_done);
+                    self.shown.read_again(&params);
                 }
             }
             Some(Over::Manual) => {
@@ -232,9 +243,19 @@ impl Window {
                     self.over = None;
                 }
             }
+            Some(Over::Files) => {
+                if let Some(done) = self.picker.show(ui, layout.page(), self.browser.library(), &mut controls) {
+                    self.over = None;
+                    match done {
+                        Picked::Files(files) => picked = files,
+                        Picked::Saved(message) => self.message = Ok(message),
+                        Picked::Nothing => self.over = self.under,
+                    }
+                }
+            }
             None if self.face == Face::Play => {
                 if let Some(message) = self.play.show(ui, layout.page(), &self.shown, &energies, &mut controls) {
-                    self.message = message;
+                    self.message = Err(message);
                 }
             }
             None if self.face == Face::Motion => {
@@ -265,8 +286,15 @@ impl Window {
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.over = None;
         }
-        let (recordings, files): (Vec<_>, Vec<_>) =
-            drops::dropped(ui).into_iter().partition(|path| drops::is_recording(path));
+        if let Some(pick) = controls.interaction.pick.take() {
+            self.picker.open(pick, self.browser.library());
+            (self.under, self.over) = (self.over, Some(Over::Files));
+        }
+        if self.over != Some(Over::Files) {
+            self.picker.close();
+        }
+        picked.extend(drops::dropped(ui));
+        let (recordings, files): (Vec<_>, Vec<_>) = picked.into_iter().partition(|path| drops::is_recording(path));
         for path in files {
             self.message = drops::take(&path, self.browser.library(), &mut controls);
             self.browser.forget();
@@ -288,17 +316,20 @@ impl Window {
         let learnt = bound.or_else(|| learn::follow(ui, &mut controls));
         let learnt = learnt.or_else(|| carry::follow(ui, self.shown.guide(), &mut controls));
         let learnt = learnt.or_else(|| controls.interaction.said.take());
+        // Knobs have taken the wheel that was theirs.
+        let is_wheel = |event: &Event| matches!(event, Event::MouseWheel { .. });
+        controls.interaction.is_scrolling |= ui.input(|input| input.events.iter().any(is_wheel));
         // What is dragged may have gone with its page.
         if !ui.input(|input| input.pointer.any_down()) {
             controls.release();
         }
-        if let Some(messages) = learnt.or_else(|| params.link().take_messages()).or(played) {
+        if let Some(messages) = learnt.or_else(|| params.link().take_messages().map(Err)).or(played.map(Ok)) {
             self.message = messages;
         }
         let complaint = controls.interaction.typing.as_ref().and_then(|typing| typing.complaint.clone());
-        let complaints = || status::summary(&params.complaints()).unwrap_or_default();
-        let message = if self.message.is_empty() { complaints() } else { self.message.clone() };
-        let message = complaint.unwrap_or(message);
+        let is_quiet = self.message.as_ref().is_ok_and(String::is_empty);
+        let complaints = || status::summary(&params.complaints()).filter(|_| is_quiet);
+        let message = complaint.or_else(complaints).map_or_else(|| self.message.clone(), Err);
         let sample_rate = params.link().sample_rate();
         let load = self.load.share(now, telemetry, sample_rate);
         let engine = status::engine(voices, load, sample_rate);
@@ -316,7 +347,7 @@ impl Window {
         if std::mem::replace(&mut self.loads, loads) != loads {
             (self.history, self.other, self.is_b) = (History::default(), None, false);
             self.interaction.switched_off.clear();
-            self.message.clear();
+            self.message = Ok(String::new());
         }
     }
 }

@@ -24,18 +24,18 @@ impl Window {
     /// Replaces the sound by a random variation.
     fn vary(&mut self, variation: Variation, host: &GuiContext) {
         let Playable::Preset(preset) = self.params.state().playable else {
-            self.message = "a kit’s sounds cannot be varied together: load one of them".to_owned();
+            self.message = Err("a kit’s sounds cannot be varied together: load one of them".to_owned());
             return;
         };
         self.seed = self.seed.wrapping_add(1);
         match variation.of(&preset, self.seed, &self.locked) {
             Some(varied) => {
-                self.message.clear();
+                self.message = Ok(String::new());
                 self.history.begin(&self.params);
                 load(Playable::Preset(varied), &self.params, host);
                 self.history.end(variation.name(), &self.params);
             }
-            None => self.message = "every variation that was tried is silent: unlock more sections".to_owned(),
+            None => self.message = Err("every variation that was tried is silent: unlock more sections".to_owned()),
         }
     }
 
@@ -54,7 +54,7 @@ impl Window {
             Request::Browse | Request::Save => {
                 let closes = self.over == Some(Over::Browser) && request == Request::Browse;
                 self.over = (!closes).then_some(Over::Browser);
-                self.message.clear();
+                self.message = Ok(String::new());
                 self.browser.open(&self.params.name(), if request == Request::Save { Aim::Save } else { Aim::Find });
             }
             Request::Undo => self.go_back(History::undo, host),

@@ -1,6 +1,6 @@
 //! The status line: the thing under the pointer, the last message, and the state of the engine.
 
-use crate::editor::controls::Hint;
+use crate::editor::controls::{Hint, Said};
 use crate::editor::theme::{Palette, SMALL};
 use crate::editor::widgets::text::{line, width};
 use egui::{Align2, Id, Popup, PopupAnchor, Rect, Role, Sense, Tooltip, Ui, WidgetInfo, pos2};
@@ -66,7 +66,7 @@ pub(super) fn summary(complaints: &[String]) -> Option<String> {
 /// pointer has moved: what a click or a key has led to must be seen where the pointer rests.
 #[derive(Default)]
 pub(super) struct StatusLine {
-    message: String,
+    message: Option<Said>,
     is_unread: bool,
 }
 
@@ -76,15 +76,15 @@ impl StatusLine {
         ui: &Ui,
         rect: Rect,
         hint: Option<&Hint>,
-        message: &str,
+        message: &Said,
         right: &str,
         palette: &Palette,
     ) {
         let has_moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO || input.pointer.any_pressed());
         self.is_unread &= !has_moved;
-        if self.message != message {
-            message.clone_into(&mut self.message);
-            self.is_unread = !message.is_empty();
+        if self.message.as_ref() != Some(message) {
+            self.message = Some(message.clone());
+            self.is_unread = !text_of(message).is_empty();
         }
         let hint = hint.filter(|_| !self.is_unread);
         paint(ui, rect, hint, message, right, palette);
@@ -110,8 +110,14 @@ fn show_at_pointer(ui: &Ui, Hint { title, help }: &Hint) {
     }
 }
 
-fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, right: &str, palette: &Palette) {
-    let painter = ui.painter();
+/// The words of a message.
+fn text_of(message: &Said) -> &str {
+    let (Ok(text) | Err(text)) = message;
+    text
+}
+
+fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, said: &Said, right: &str, palette: &Palette) {
+    let (painter, message) = (ui.painter(), text_of(said));
     let right_width = width(painter, right, SMALL);
     line(painter, rect, Align2::RIGHT_CENTER, right, SMALL, palette.muted);
     let left = rect.with_max_x(rect.right() - right_width - 16.0);
@@ -130,7 +136,9 @@ fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, right: &str, p
             line(painter, rest, Align2::LEFT_CENTER, help, SMALL, palette.muted);
         }
         None => {
-            line(painter, left, Align2::LEFT_CENTER, message, SMALL, palette.warning);
+            // The colour of warnings is for what went wrong.
+            let colour = if said.is_ok() { palette.text } else { palette.warning };
+            line(painter, left, Align2::LEFT_CENTER, message, SMALL, colour);
         }
     }
 }
@@ -138,6 +146,7 @@ fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, right: &str, p
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::editor::theme::Theme;
     use sprung::engine::TelemetryWriter;
     use std::sync::Arc;
 
@@ -155,6 +164,21 @@ mod tests {
         assert_eq!(load.share(0.9, &telemetry, 48_000), Some(share));
         assert!((load.share(1.0, &telemetry, 48_000).unwrap() - 0.1).abs() < 1e-6);
         assert_eq!(load.share(2.0, &telemetry, 48_000), None, "nothing was played");
+    }
+
+    #[test]
+    fn only_what_went_wrong_has_the_colour_of_warnings() {
+        let palette = Theme::Dark.palette();
+        let context = egui::Context::default();
+        for (said, colour) in [(Ok("saved"), palette.text), (Err("refused"), palette.warning)] {
+            let said = said.map(str::to_owned).map_err(str::to_owned);
+            let mut output =
+                context.run_ui(egui::RawInput::default(), |ui| paint(ui, ui.max_rect(), None, &said, "", palette));
+            let words = text_of(&said);
+            let is_it = |shape: &egui::epaint::ClippedShape| matches!(&shape.shape, egui::Shape::Text(text) if text.galley.text() == words && text.fallback_color == colour);
+            assert!(output.shapes.iter().any(is_it), "{words}");
+            output.textures_delta.clear();
+        }
     }
 
     #[test]

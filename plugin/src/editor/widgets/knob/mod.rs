@@ -19,6 +19,8 @@ use sprung::params::{ParamInfo, Unit};
 const TRAVEL: f32 = 220.0;
 /// Share of the travel for one step of the wheel or of an arrow key.
 const STEP: f64 = 0.01;
+/// Seconds for which the pointer rests on a knob before the wheel turns it, where the wheel may be meant to scroll.
+const REST: f32 = 0.25;
 /// Factor for all movements while Shift is held.
 const FINE: f64 = 0.1;
 
@@ -212,18 +214,25 @@ fn step(info: &'static ParamInfo, steps: f64, controls: &mut Controls) {
     }
 }
 
-/// Turns by the wheel while the pointer is over the knob.
+/// Turns by the wheel while the pointer is over the knob. Where the page can be scrolled, only once the pointer has rested there: a
+/// wheel that has begun to scroll goes on doing so, whatever knobs come under the pointer.
 pub(super) fn wheel(ui: &Ui, response: &Response, info: &'static ParamInfo, controls: &mut Controls) {
-    if !response.hovered() {
+    let can_scroll = !ui.clip_rect().expand(1.0).contains_rect(ui.min_rect());
+    let has_rested = || ui.input(|input| input.pointer.time_since_last_movement()) >= REST;
+    if !response.hovered() || can_scroll && (controls.interaction.is_scrolling || !has_rested()) {
         return;
     }
-    let (steps, fine) = ui.input(|input| {
-        let turned = |event: &Event| match event {
-            Event::MouseWheel { unit: egui::MouseWheelUnit::Point, delta, .. } => f64::from(delta.y + delta.x) / 20.0,
-            Event::MouseWheel { delta, .. } => f64::from(delta.y + delta.x),
-            _ => 0.0,
-        };
-        (input.events.iter().map(turned).sum::<f64>(), input.modifiers.shift)
+    let (steps, fine) = ui.input_mut(|input| {
+        // The page must not move as well.
+        input.smooth_scroll_delta = egui::Vec2::ZERO;
+        let mut steps = 0.0;
+        input.events.retain(|event| {
+            let Event::MouseWheel { unit, delta, .. } = event else { return true };
+            let points = if *unit == egui::MouseWheelUnit::Point { 20.0 } else { 1.0 };
+            steps += f64::from(delta.y + delta.x) / points;
+            false
+        });
+        (steps, input.modifiers.shift)
     });
     if steps != 0.0 {
         step(info, if fine { steps * FINE } else { steps }, controls);

@@ -1,0 +1,298 @@
+//! A list of folders and files, in which files are chosen to be opened, or a place to save a sound.
+//!
+//! The systems' own dialogs differ in what they need: a portal that many Linux systems lack, or a host's main thread, which
+//! waits for them. This one is the same everywhere and waits for nothing.
+
+mod listing;
+
+use super::controls::{Controls, Hint, Pick, Said};
+use super::drops;
+use super::theme::{GAP, PADDING, SMALL, TEXT, font};
+use super::widgets::buttons::{Look, button};
+use super::widgets::progress::PAUSE;
+use super::widgets::text::{line, name_field};
+use crate::editor::background::Background;
+use egui::{Align2, Id, Key, Rect, Response, Role, ScrollArea, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+use listing::{Entry, Listing};
+use sprung::preset::library::{Library, export};
+use sprung::text::slug;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Height of a row of the list, and least width of a column.
+const ROW: f32 = 22.0;
+const COLUMN: f32 = 230.0;
+/// Width of the places at the left, and of buttons.
+const SIDE: f32 = 96.0;
+const BUTTON: f32 = 72.0;
+
+/// What became of it.
+pub(super) enum Picked {
+    Nothing,
+    /// These files are to be opened.
+    Files(Vec<PathBuf>),
+    /// The sound was saved.
+    Saved(String),
+}
+
+/// The state of the list.
+#[derive(Default)]
+pub(super) struct Picker {
+    pick: Option<Pick>,
+    listing: Listing,
+    /// The folder that is being read.
+    work: Option<Background<Listing>>,
+    chosen: BTreeSet<PathBuf>,
+    /// The path that is typed, and the name of the file to save.
+    path: String,
+    name: String,
+    /// A path that is written over if the user saves again.
+    confirm: Option<PathBuf>,
+    complaint: String,
+}
+
+impl Picker {
+    /// Prepares for being shown, in the folder that was shown last.
+    pub(super) fn open(&mut self, pick: Pick, library: Option<&Library>) {
+        if let Pick::Place(sound) = &pick {
+            self.name = format!("{}.toml", slug(sound.name()));
+        }
+        self.pick = Some(pick);
+        let last = self.listing.folder.clone();
+        let first = || std::env::home_dir().unwrap_or_else(|| PathBuf::from("/"));
+        self.go(if last.as_os_str().is_empty() { first() } else { last }, library);
+    }
+
+    /// Ends the reading of a folder.
+    pub(super) fn close(&mut self) {
+        self.work = None;
+    }
+
+    fn go(&mut self, path: PathBuf, library: Option<&Library>) {
+        self.chosen.clear();
+        (self.complaint, self.confirm) = (String::new(), None);
+        let endings = match self.pick {
+            Some(Pick::Scale) => drops::SCALES.to_vec(),
+            Some(Pick::Place(_)) => drops::SOUNDS.to_vec(),
+            _ => [&drops::SOUNDS[..], &drops::SCALES, &drops::RECORDINGS].concat(),
+        };
+        match listing::start(path, endings, library.map(Library::presets_folder)) {
+            Ok(work) => self.work = Some(work),
+            Err(message) => self.complaint = message,
+        }
+    }
+
+    /// Takes over the folder that has been read. Returns the file whose path was typed.
+    fn follow(&mut self, ui: &Ui) -> Option<PathBuf> {
+        let Some(ended) = self.work.as_mut()?.take() else {
+            ui.ctx().request_repaint_after(PAUSE);
+            return None;
+        };
+        self.work = None;
+        match ended {
+            Ok(listing) => {
+                self.path = listing.folder.display().to_string();
+                self.listing = listing;
+                self.listing.file.take()
+            }
+            Err(message) => {
+                self.complaint = message;
+                None
+            }
+        }
+    }
+
+    /// Shows the list. Returns what became of it, when the user is done.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        library: Option<&Library>,
+        controls: &mut Controls,
+    ) -> Option<Picked> {
+        let palette = controls.palette;
+        palette.paint_panel(ui.painter(), rect);
+        let inner = rect.shrink(PADDING);
+        let mut wanted = self.follow(ui).map(|file| vec![file]);
+        let saves = matches!(self.pick, Some(Pick::Place(_)));
+
+        let top = inner.with_max_y(inner.top() + 24.0);
+        let up = top.with_max_x(top.left() + 44.0);
+        let parent = self.listing.folder.parent().map(Path::to_owned);
+        let look = if parent.is_some() { Look::Plain } else { Look::Disabled };
+        let mut to = None;
+        if button(ui, up, "Up", "Folder above", look, palette).clicked() {
+            to = parent;
+        }
+        let cancel = top.with_min_x(top.right() - BUTTON);
+        let field = Rect::from_min_max(pos2(up.right() + GAP, top.top()), pos2(cancel.left() - GAP, top.bottom()));
+        let edit = TextEdit::singleline(&mut self.path).id(Id::unique("path")).hint_text("a folder or file");
+        let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
+        name_field(&response, "Path of a folder or file", &self.path);
+        if is_entered(ui, &response) {
+            to = Some(PathBuf::from(self.path.trim()));
+        }
+        if button(ui, cancel, "Cancel", "Choose no file", Look::Plain, palette).clicked() {
+            return Some(Picked::Nothing);
+        }
+
+        let bottom = inner.with_min_y(inner.bottom() - 24.0);
+        let told = if self.complaint.is_empty() { 0.0 } else { 18.0 };
+        let foot = bottom.right_top() - vec2(0.0, GAP + told);
+        let middle = Rect::from_min_max(top.left_bottom() + vec2(0.0, GAP), foot);
+        let complaint = Rect::from_min_max(pos2(inner.left(), foot.y), foot + vec2(0.0, told));
+        line(ui.painter(), complaint, Align2::LEFT_CENTER, &self.complaint, SMALL, palette.warning);
+        to = self.places(ui, middle.with_max_x(middle.left() + SIDE), controls).or(to);
+        let list = middle.with_min_x(middle.left() + SIDE + 2.0 * GAP);
+        let (entered, opened) = self.list(ui, list, saves, controls);
+        to = entered.or(to);
+        wanted = wanted.or(opened.map(|file| vec![file]));
+
+        let main = bottom.with_min_x(bottom.right() - BUTTON);
+        let rest = bottom.with_max_x(main.left() - GAP).with_min_x(list.left());
+        if saves {
+            let edit = TextEdit::singleline(&mut self.name).id(Id::unique("file name")).hint_text("a name");
+            let response = ui.put(rest, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
+            name_field(&response, "Name of the file", &self.name);
+            let text = if self.confirm.is_some() { "Replace" } else { "Save" };
+            let is_asked = button(ui, main, text, "Save in this folder", Look::Main, palette).clicked();
+            if is_asked || is_entered(ui, &response) || wanted.is_some() {
+                match self.save() {
+                    Ok(message) => return Some(Picked::Saved(message)),
+                    Err(message) => self.complaint = message,
+                }
+            }
+        } else {
+            let text = match self.pick {
+                Some(Pick::Scale) => "Scales (.scl) and keyboard mappings (.kbm)",
+                _ => "Sounds and kits (.toml), scales (.scl, .kbm), recordings to make a sound of",
+            };
+            line(ui.painter(), rest, Align2::LEFT_CENTER, text, SMALL, palette.muted);
+            let look = if self.chosen.is_empty() { Look::Disabled } else { Look::Main };
+            let response = button(ui, main, "Open", "Open the chosen files", look, palette);
+            if response.hovered() {
+                *controls.hint =
+                    Hint::new("Open", "As if it were dropped on the window. Ctrl chooses several recordings.");
+            }
+            if response.clicked() && look == Look::Main {
+                wanted = Some(self.chosen.iter().cloned().collect());
+            }
+            if let Some(files) = wanted {
+                return Some(Picked::Files(files));
+            }
+        }
+        if let Some(path) = to {
+            self.go(path, library);
+        }
+        None
+    }
+
+    /// Shows folders to go to. Returns the one that is clicked.
+    fn places(&self, ui: &mut Ui, rect: Rect, controls: &Controls) -> Option<PathBuf> {
+        let mut inner = ui.new_child(UiBuilder::new().id_salt("places").max_rect(rect));
+        let shown = ScrollArea::vertical().id_salt("places").auto_shrink(false).show(&mut inner, |ui| {
+            ui.spacing_mut().item_spacing.y = 2.0;
+            let mut clicked = None;
+            for Entry { name, path, .. } in &self.listing.places {
+                let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW - 2.0), Sense::hover());
+                let look = if *path == self.listing.folder { Look::On } else { Look::Off };
+                if button(ui, row, name, &format!("Go to {name}"), look, controls.palette).clicked() {
+                    clicked = Some(path.clone());
+                }
+            }
+            clicked
+        });
+        shown.inner
+    }
+
+    /// Shows what is in the folder. Returns the folder that was clicked, and the file that was chosen by two clicks or by Enter.
+    fn list(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        saves: bool,
+        controls: &Controls,
+    ) -> (Option<PathBuf>, Option<PathBuf>) {
+        let palette = controls.palette;
+        let (mut entered, mut opened) = (None, None);
+        if self.listing.entries.is_empty() {
+            let text = if self.work.is_some() { "Reading …" } else { "Nothing here that can be opened." };
+            let place = rect.with_max_y(rect.top() + ROW);
+            line(ui.painter(), place, Align2::LEFT_CENTER, text, TEXT, palette.muted);
+        }
+        let columns = ((rect.width() / COLUMN) as usize).max(1);
+        let mut inner = ui.new_child(UiBuilder::new().id_salt("files").max_rect(rect));
+        ScrollArea::vertical().id_salt("files").auto_shrink(false).show(&mut inner, |ui| {
+            let rows = self.listing.entries.len().div_ceil(columns);
+            let width = ui.available_width() / columns as f32;
+            let size = vec2(ui.available_width(), rows as f32 * ROW);
+            let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+            for (place, Entry { name, path, is_folder }) in self.listing.entries.iter().enumerate() {
+                let corner = area.min + vec2((place % columns) as f32 * width, (place / columns) as f32 * ROW);
+                let cell = Rect::from_min_size(corner, vec2(width, ROW)).shrink2(vec2(2.0, 1.0));
+                if !ui.is_rect_visible(cell) {
+                    continue;
+                }
+                let response = ui.interact(cell, Id::unique(("file", place)), Sense::click());
+                let is_chosen = self.chosen.contains(path);
+                let label = if *is_folder { format!("Folder {name}") } else { name.clone() };
+                response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_chosen, &label));
+                if is_chosen || response.hovered() || response.has_focus() {
+                    ui.painter().rect_filled(cell, 3.0, palette.raised);
+                }
+                let colour = match (is_chosen, is_folder) {
+                    (true, _) => palette.accent_text,
+                    (false, true) => palette.text,
+                    (false, false) => palette.muted,
+                };
+                let text = if *is_folder { format!("{name}/") } else { name.clone() };
+                line(ui.painter(), cell.shrink2(vec2(5.0, 0.0)), Align2::LEFT_CENTER, &text, TEXT, colour);
+                if !response.clicked() {
+                    continue;
+                }
+                let (adds, is_by_key) = ui.input(|input| (input.modifiers.command, !input.pointer.any_click()));
+                match (is_folder, saves) {
+                    (true, _) => entered = Some(path.clone()),
+                    (false, true) => self.name.clone_from(name),
+                    (false, false) if response.double_clicked() || is_by_key => opened = Some(path.clone()),
+                    (false, false) => {
+                        if !adds {
+                            self.chosen.clear();
+                        }
+                        if !is_chosen || !adds {
+                            self.chosen.insert(path.clone());
+                        } else {
+                            self.chosen.remove(path);
+                        }
+                    }
+                }
+            }
+        });
+        (entered, opened)
+    }
+
+    /// Saves the sound in the folder. A file that is there is only replaced when it is asked for again.
+    fn save(&mut self) -> Said {
+        let Some(Pick::Place(sound)) = &self.pick else { return Err(String::new()) };
+        let name = self.name.trim();
+        let name = if name.ends_with(".toml") { name.to_owned() } else { format!("{name}.toml") };
+        if name == ".toml" || name.contains(['/', '\\']) {
+            return Err("expected the name of a file".to_owned());
+        }
+        let path = self.listing.folder.join(name);
+        let replace = self.confirm.take().is_some_and(|confirmed| confirmed == path);
+        match export(sound, &path, replace) {
+            Ok(()) => Ok(format!("saved {}", path.display())),
+            Err(sprung::Error::Exists { path: there }) => {
+                self.confirm = Some(path);
+                Err(format!("{there} exists; Replace writes over it"))
+            }
+            Err(error) => Err(error.to_string()),
+        }
+    }
+}
+
+/// Whether Enter was pressed in a field.
+fn is_entered(ui: &Ui, response: &Response) -> bool {
+    response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
+}

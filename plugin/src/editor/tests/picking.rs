@@ -1,0 +1,137 @@
+//! Files chosen in the list of files, and sounds saved in any folder.
+
+use super::dropped::asset;
+use super::pictures::{Stage, stage};
+use crate::editor::theme::{SIZE, Theme};
+use egui::{Key, Modifiers, Role};
+use egui_kittest::kittest::Queryable as _;
+use sprung::preset::Playable;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+impl Stage {
+    fn is_listed(&self, name: &str) -> bool {
+        self.harness.query_by_role_and_label(Role::ListItem, name).is_some()
+    }
+
+    /// Goes to a path, and waits until an entry is listed.
+    fn go(&mut self, path: &Path, entry: &str) {
+        self.fill("Path of a folder or file", &path.display().to_string());
+        self.harness.key_press(Key::Enter);
+        self.until(|stage| stage.is_listed(entry));
+    }
+
+    fn fill(&mut self, field: &str, text: &str) {
+        self.harness.get_by_role_and_label(Role::TextInput, field).focus();
+        self.harness.run_steps(2);
+        self.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        self.harness.run_steps(1);
+        self.type_text(text);
+    }
+
+    /// Shows the window until something is so: folders are read in the background.
+    fn until(&mut self, is_so: impl Fn(&Self) -> bool) {
+        let end = Instant::now() + Duration::from_secs(60);
+        while !is_so(self) {
+            assert!(Instant::now() < end, "it happens");
+            std::thread::sleep(Duration::from_millis(5));
+            self.harness.run_steps(1);
+        }
+        self.harness.run_steps(2);
+    }
+
+    fn click_entry(&mut self, name: &str) {
+        self.harness.get_by_role_and_label(Role::ListItem, name).click();
+        self.harness.run_steps(3);
+    }
+
+    fn says(&self, text: &str) -> bool {
+        self.harness.query_by_label_contains(text).is_some()
+    }
+}
+
+/// A folder with one of each, and a file that cannot be opened.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("more")).unwrap();
+    std::fs::copy(asset("scales/19-equal.scl"), folder.path().join("more/well.scl")).unwrap();
+    std::fs::copy(asset("presets/mallet/marimba.toml"), folder.path().join("mine.toml")).unwrap();
+    std::fs::write(folder.path().join("song.mid"), "x").unwrap();
+    folder
+}
+
+#[test]
+fn a_scale_is_chosen_in_a_folder_below() {
+    let (mut stage, folder) = (stage("Marimba", SIZE, 1.0, Theme::Dark), folder());
+    stage.harness.get_by_role_and_label(Role::Tab, "Tuning").click();
+    stage.harness.run_steps(3);
+    stage.button("Open a scale or mapping");
+    stage.go(folder.path(), "Folder more");
+    assert!(!stage.is_listed("mine.toml"), "it is no scale");
+    stage.harness.check_accessibility();
+    stage.click_entry("Folder more");
+    stage.until(|stage| stage.is_listed("well.scl"));
+    stage.button("Open the chosen files");
+    assert!(stage.is_listed("well.scl"), "none is chosen");
+    stage.click_entry("well.scl");
+    stage.button("Open the chosen files");
+    assert!(stage.says("tuned to") && !stage.is_listed("well.scl"));
+    stage.button("Undo");
+    // Once more, by a double click, in the folder that was shown last, and then by the keyboard.
+    stage.button("Open a scale or mapping");
+    stage.until(|stage| stage.is_listed("well.scl"));
+    stage.harness.run_steps(40);
+    let place = stage.harness.get_by_role_and_label(Role::ListItem, "well.scl").rect().center();
+    stage.click(place);
+    stage.click(place);
+    assert!(!stage.is_listed("well.scl"));
+    stage.button("Open a scale or mapping");
+    stage.until(|stage| stage.is_listed("well.scl"));
+    stage.harness.get_by_role_and_label(Role::ListItem, "well.scl").focus();
+    stage.harness.run_steps(2);
+    stage.harness.key_press(Key::Enter);
+    stage.harness.run_steps(3);
+    assert!(!stage.is_listed("well.scl"));
+}
+
+#[test]
+fn sounds_are_imported_by_a_button_or_by_a_typed_path() {
+    let (mut stage, folder) = (stage("Kick", SIZE, 1.0, Theme::Dark), folder());
+    stage.button("Browse");
+    stage.button("Import files");
+    stage.go(folder.path(), "mine.toml");
+    assert!(stage.is_listed("Folder more") && !stage.is_listed("song.mid"));
+    stage.button("Choose no file");
+    assert!(stage.harness.query_by_label("Search").is_some(), "back in the browser");
+    stage.button("Import files");
+    stage.until(|stage| stage.is_listed("mine.toml"));
+    stage.fill("Path of a folder or file", &folder.path().join("nowhere").display().to_string());
+    stage.harness.key_press(Key::Enter);
+    stage.until(|stage| stage.is_listed("mine.toml") && stage.params.name() == "Kick");
+    stage.fill("Path of a folder or file", &folder.path().join("mine.toml").display().to_string());
+    stage.harness.key_press(Key::Enter);
+    stage.until(|stage| stage.params.name() != "Kick");
+    assert!(stage.says("imported as"));
+}
+
+#[test]
+fn a_copy_is_saved_in_any_folder_and_written_over_only_if_asked_again() {
+    let (mut stage, folder) = (stage("Marimba", SIZE, 1.0, Theme::Dark), folder());
+    for round in 0..2 {
+        stage.button("Save");
+        stage.type_text("Night Wood");
+        stage.button("Save in another folder");
+        stage.go(folder.path(), "mine.toml");
+        assert!(!stage.is_listed("song.mid"));
+        stage.button("Save in this folder");
+        if round > 0 {
+            assert!(stage.harness.query_by_label("Name of the file").is_some(), "it exists");
+            stage.button("Save in this folder");
+        }
+        assert!(stage.says("saved "));
+    }
+    let saved = std::fs::read_to_string(folder.path().join("night-wood.toml")).unwrap();
+    assert!(saved.contains("Night Wood") && !saved.contains("author = \"Sprung\""));
+    assert_eq!(stage.params.name(), "Marimba", "the sound itself is not saved");
+    assert!(matches!(stage.params.state().playable, Playable::Preset(_)));
+}
