@@ -1,9 +1,10 @@
 //! What parts of a sound do, as curves for displays: by the formulas with which the engine plays.
 
 use super::gain::pan_gains;
+use super::space::body;
 use crate::dsp::exciter::Bow;
 use crate::dsp::space::{Decay, Overdrive, Tone, Tremolo};
-use crate::params::Valve;
+use crate::params::{Soundbox, Valve};
 use crate::sound::blown;
 use libm::pow;
 
@@ -35,6 +36,11 @@ pub fn drive(decibels: f32, sample: f32) -> f32 {
 /// The gain in dB of a tone control at a frequency in Hz, for its gains of lows and highs in dB.
 pub fn tone([low, high]: [f32; 2], hertz: f64) -> f64 {
     Tone::gain_at(low, high, hertz)
+}
+
+/// The gain in dB of a soundbox by frequency in Hz, at a size of 1 and a vowel from 0 to 1; none without a body. Allocates.
+pub fn soundbox(soundbox: Soundbox, vowel: f64) -> Option<impl Fn(f64) -> f64> {
+    body(soundbox).map(|body| body.response(vowel))
 }
 
 /// T60 in seconds of strings or a space at a frequency in Hz, for those of low and of high frequencies.

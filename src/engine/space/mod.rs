@@ -245,7 +245,7 @@ fn follow_soundbox(soundbox: &mut Soundbox, param: Param, values: &Values) {
 }
 
 /// The body of a soundbox.
-fn body(soundbox: params::Soundbox) -> Option<&'static BoxBody> {
+pub(super) fn body(soundbox: params::Soundbox) -> Option<&'static BoxBody> {
     match soundbox {
         params::Soundbox::None => None,
         params::Soundbox::Violin => Some(BoxBody::violin()),

@@ -4,7 +4,7 @@
 
 use egui::{Vec2, vec2};
 use sprung::engine::curves;
-use sprung::params::{Choice as _, MalletPulse, NoiseDecay, PARAMS, Param, ParamInfo, Rattle, Shape, Valve};
+use sprung::params::{Choice as _, MalletPulse, NoiseDecay, PARAMS, Param, ParamInfo, Rattle, Shape, Soundbox, Valve};
 use sprung::sound::contact_time;
 use sprung::units::{db_from_gain, ratio_from_semitones, semitones_from_ratio};
 use std::f32::consts::TAU;
@@ -21,6 +21,8 @@ const PRESSURE: f64 = 2.0;
 const FLIGHT: f64 = 0.1;
 /// How many halvings a fall by 60 dB has.
 const HALVINGS: f64 = 3.0 * LOG2_10;
+/// The gain in dB at the edges of the picture of a soundbox.
+const LOUDEST: f64 = 24.0;
 /// Fixed example values for LFO shapes with random values.
 const CHANCE: [f32; 4] = [0.5, -0.8, 0.9, -0.3];
 
@@ -83,6 +85,11 @@ pub(super) fn of(section: &[ParamInfo], value: &dyn Fn(&'static ParamInfo) -> f3
         Param::Tune => {
             let sweep = [Param::Sweep, Param::SweepTime, Param::SweepCurve].map(get);
             pitch(sweep, [Param::Vibrato, Param::VibratoRate, Param::VibratoDelay].map(get))
+        }
+        Param::Soundbox => {
+            let [size, vowel] = [share(Param::SoundboxSize), share(Param::SoundboxVowel)];
+            let gain = curves::soundbox(Soundbox::from_value(value(Param::Soundbox.info())), vowel)?;
+            around(plotted(3 * POINTS, |x| (gain(hertz(x) * size) / LOUDEST).clamp(-1.0, 1.0)), "gain by frequency")
         }
         Param::StringsLevel => {
             above(decay([Param::StringsLowDecay, Param::StringsHighDecay].map(get)), "T60 by frequency")

@@ -3,7 +3,7 @@
 use crate::dsp::coefficients::LN_MINUS_60_DB;
 use crate::dsp::mode_bank::MAX_MODES;
 use crate::dsp::random::{Sequence, key};
-use libm::{cos, log2, pow, sin, sqrt};
+use libm::{cos, log2, log10, pow, sin, sqrt};
 use std::f64::consts::{FRAC_PI_4, PI, SQRT_2};
 use std::sync::LazyLock;
 
@@ -81,6 +81,12 @@ impl BoxBody {
     /// The bell of a trumpet: of a trombone at a size of 2.3, of a bassoon at 2.7, of a horn at 3.5, of a tuba at 5.
     pub fn horn() -> &'static Self {
         &BODIES[4]
+    }
+
+    /// The gain in dB of a lasting sine by its frequency in Hz, at a place among the vowels, 0 to 1. Allocates.
+    pub fn response(&'static self, vowel: f64) -> impl Fn(f64) -> f64 {
+        let modes: Vec<_> = self.at(vowel).collect();
+        move |frequency| 10.0 * log10(power(&modes, frequency))
     }
 
     /// The resonances at a place among the vowels, 0 to 1.

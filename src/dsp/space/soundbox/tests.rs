@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::dsp::random::{Sequence, key};
+use libm::pow;
 use std::f64::consts::TAU;
 
 const BODIES: [fn() -> &'static BoxBody; 5] =
@@ -94,6 +95,24 @@ fn pink_noise_keeps_its_loudness() {
         let decibels = 10.0 * libm::log10(energy.sum::<f64>() / f64::from(steps));
         println!("body {place}: {decibels:.1} dB");
         assert!(decibels.abs() < 0.5, "body {place}: {decibels} dB");
+    }
+}
+
+#[test]
+fn the_response_that_is_drawn_is_that_which_is_played() {
+    for body in BODIES {
+        let (response_of, [left, right]) = (body().response(0.4), {
+            let mut soundbox = wet(body(), 48_000.0);
+            soundbox.set_vowel(0.4);
+            response(&mut soundbox, 24_000)
+        });
+        // The first half sample of each resonance is not played, which makes a decibel, and more far below them.
+        for frequency in [300.0, 777.0, 2000.0] {
+            let gains = [&left, &right].map(|side| gain(side, frequency, 48_000.0));
+            let played = sqrt(0.5 * (gains[0] * gains[0] + gains[1] * gains[1]));
+            let drawn = pow(10.0, response_of(frequency) / 20.0);
+            assert!((played - drawn).abs() < 0.15, "{frequency} Hz: {played}, {drawn}");
+        }
     }
 }
 
