@@ -11,6 +11,12 @@ use crate::sound::tuning::Pitch;
 impl Synth {
     /// Handles one event, at the frame that is rendered next.
     pub fn handle(&mut self, event: &Event) {
+        // Hosts send modulation beyond a knob's end, or do not, as their blocks have it.
+        if let EventKind::Modulate { id: None, param, offset } = event.kind
+            && self.instruments.offset(param) == finite(offset).clamp(-1.0, 1.0)
+        {
+            return;
+        }
         let channel = nearest_channel(event.channel);
         // A new tempo takes effect at the next regular control tick.
         self.needs_control |= !matches!(event.kind, EventKind::Tempo(_));

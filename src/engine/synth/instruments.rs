@@ -207,6 +207,11 @@ impl Instruments {
         self.number();
     }
 
+    /// The modulation offset of a kit's parameter in knob travel.
+    pub(super) fn offset(&self, param: Param) -> f32 {
+        self.offsets[param as usize]
+    }
+
     /// Sets the modulation offset of a kit's parameter in knob travel, at frame `clock`.
     pub(super) fn modulate(&mut self, param: Param, offset: f32, clock: u64) {
         self.offsets[param as usize] = offset;

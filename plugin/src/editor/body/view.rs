@@ -110,6 +110,7 @@ impl BodyView {
         if let Some(point) = point {
             *controls.hint = Hint::new(describe(point, shape), "Click or drag to where it is struck.");
         }
+        let is_held = self.drag.is_some();
         let is_pressed = is_clicked || pointer.is_some() && ui.input(|input| input.pointer.any_pressed());
         if is_pressed && self.drag.is_none() && found.is_some_and(|(_, distance)| distance <= REACH) {
             controls.history.begin(controls.params);
@@ -145,7 +146,10 @@ impl BodyView {
         }
         if is_over {
             self.drag = None;
-            audition.release(controls.params.link());
+            // A note that begins in this pass is held for its while.
+            if is_held {
+                audition.release(controls.params.link());
+            }
             if shape.origin == Origin::Table {
                 controls.release();
             } else {

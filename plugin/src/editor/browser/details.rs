@@ -5,11 +5,13 @@ use crate::editor::controls::{Controls, Hint, Pick, Said};
 use crate::editor::theme::{SMALL, TEXT, TITLE_HEIGHT, font};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::{line, name_field, paragraph, take_over};
+use crate::loaded::Loaded;
 use egui::{Align2, Id, Key, Rect, TextEdit, Ui, pos2, vec2};
 use sprung::preset::catalogue::Listed;
 use sprung::preset::library::Library;
 use sprung::preset::{Playable, Preset};
 use sprung::units::note_name;
+use std::sync::Arc;
 
 /// What became of a request of the user's.
 pub(super) struct Outcome {
@@ -30,23 +32,21 @@ impl Outcome {
 }
 
 /// What is saved with a sound beside its name, as text.
-#[derive(Default)]
 struct About {
     author: String,
     /// With commas between them.
     tags: String,
+    /// The sound that they were proposed for.
+    loaded: Arc<Loaded>,
 }
 
 impl About {
-    /// What is proposed for the loaded sound: its tags, and its author. What is made of a factory sound is not the factory's: the
-    /// author of another sound of the user's, if there is one.
-    fn of(sounds: &Sounds, controls: &Controls) -> Self {
+    /// What is proposed for the loaded sound: its tags, and its author. What is made of a factory sound is not the factory's.
+    fn of(controls: &Controls) -> Self {
         let sound = controls.params.state().playable;
         let factory = Preset::factory().first().map_or("", |preset| preset.author.as_str());
-        let is_other = |author: &&str| !author.is_empty() && *author != factory;
-        let own = sounds.all().filter(|listed| listed.path.is_some()).map(|listed| listed.playable.author());
-        let author = Some(sound.author()).filter(is_other).or(own.into_iter().find(is_other)).unwrap_or_default();
-        Self { author: author.to_owned(), tags: sound.tags().join(", ") }
+        let author = Some(sound.author()).filter(|author| *author != factory).unwrap_or_default();
+        Self { author: author.to_owned(), tags: sound.tags().join(", "), loaded: controls.params.loaded() }
     }
 
     /// The author and the tags.
@@ -125,6 +125,8 @@ impl Details {
             response.lost_focus() && response.ctx.input(|input| input.key_pressed(Key::Enter))
         };
         let mut is_entered = false;
+        // Another sound may have been loaded since, by other ways than this list.
+        self.about.take_if(|about| !Arc::ptr_eq(&about.loaded, &controls.params.loaded()));
         if let Some(about) = &mut self.about {
             let fields = [
                 ("by", "Author of the saved sound", "your name", &mut about.author),
@@ -158,16 +160,16 @@ impl Details {
             take_over(ui, id, &self.name);
         }
         if response.has_focus() && self.about.is_none() {
-            self.about = Some(About::of(sounds, controls));
+            self.about = Some(About::of(controls));
             ui.ctx().request_repaint();
         }
         is_entered |= enters(&response);
         let response = button(ui, elsewhere, "…", "Save in another folder", Look::Plain, palette);
         if response.hovered() {
-            *controls.hint = Hint::new("Save in another folder", "A copy, which is not among your sounds.");
+            *controls.hint = Hint::new("Save in another folder", "A copy, in any folder.");
         }
         if response.clicked() {
-            let sound = self.sound(sounds, controls);
+            let sound = self.sound(controls);
             controls.interaction.pick = Some(Pick::Place(Box::new(sound)));
         }
         let wide = (rect.width() - 8.0) / 3.0;
@@ -226,8 +228,8 @@ impl Details {
     }
 
     /// The present sound as it is saved.
-    fn sound(&mut self, sounds: &Sounds, controls: &Controls) -> Playable {
-        let (author, tags) = self.about.get_or_insert_with(|| About::of(sounds, controls)).read();
+    fn sound(&mut self, controls: &Controls) -> Playable {
+        let (author, tags) = self.about.get_or_insert_with(|| About::of(controls)).read();
         let mut sound = controls.params.state().into_sound();
         sound.rename(self.name.trim());
         sound.describe(author, tags);
@@ -240,7 +242,7 @@ impl Details {
         let Some(library) = &sounds.library else {
             return Outcome::of(Err("the system does not say where your data is kept".to_owned()));
         };
-        let sound = self.sound(sounds, controls);
+        let sound = self.sound(controls);
         Outcome::of(match library.save(&sound, replace) {
             Ok(path) => {
                 controls.params.rename(name);

@@ -76,6 +76,11 @@ impl Picker {
             Some(Pick::Place(_)) => drops::SOUNDS.to_vec(),
             _ => [&drops::SOUNDS[..], &drops::SCALES, &drops::RECORDINGS].concat(),
         };
+        if !path.is_absolute() {
+            // Nobody knows a host's working folder.
+            self.complaint = format!("{}: expected a whole path", path.display());
+            return;
+        }
         match listing::start(path, endings, library.map(Library::presets_folder)) {
             Ok(work) => self.work = Some(work),
             Err(message) => self.complaint = message,
@@ -92,6 +97,7 @@ impl Picker {
         match ended {
             Ok(listing) => {
                 self.path = listing.folder.display().to_string();
+                self.chosen.clear();
                 self.listing = listing;
                 self.listing.file.take()
             }
@@ -113,8 +119,12 @@ impl Picker {
         let palette = controls.palette;
         palette.paint_panel(ui.painter(), rect);
         let inner = rect.shrink(PADDING);
-        let mut wanted = self.follow(ui).map(|file| vec![file]);
+        let typed = self.follow(ui);
         let saves = matches!(self.pick, Some(Pick::Place(_)));
+        if let Some(name) = typed.as_ref().and_then(|file| file.file_name()).filter(|_| saves) {
+            self.name = name.to_string_lossy().into_owned();
+        }
+        let mut wanted = typed.filter(|_| !saves).map(|file| vec![file]);
 
         let top = inner.with_max_y(inner.top() + 24.0);
         let up = top.with_max_x(top.left() + 44.0);
@@ -155,8 +165,11 @@ impl Picker {
             let response = ui.put(rest, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
             name_field(&response, "Name of the file", &self.name);
             let text = if self.confirm.is_some() { "Replace" } else { "Save" };
-            let is_asked = button(ui, main, text, "Save in this folder", Look::Main, palette).clicked();
-            if is_asked || is_entered(ui, &response) || wanted.is_some() {
+            // What is shown is where it is saved.
+            let is_there = self.work.is_none() && self.path == self.listing.folder.display().to_string();
+            let look = if is_there { Look::Main } else { Look::Disabled };
+            let is_asked = button(ui, main, text, "Save in this folder", look, palette).clicked();
+            if is_there && (is_asked || is_entered(ui, &response)) {
                 match self.save() {
                     Ok(message) => return Some(Picked::Saved(message)),
                     Err(message) => self.complaint = message,
@@ -252,9 +265,13 @@ impl Picker {
                 }
                 let (adds, is_by_key) = ui.input(|input| (input.modifiers.command, !input.pointer.any_click()));
                 match (is_folder, saves) {
+                    // The second of two clicks is on what the first has brought there.
+                    (true, _) if response.double_clicked() => {}
                     (true, _) => entered = Some(path.clone()),
                     (false, true) => self.name.clone_from(name),
-                    (false, false) if response.double_clicked() || is_by_key => opened = Some(path.clone()),
+                    (false, false) if response.double_clicked() && is_chosen || is_by_key => {
+                        opened = Some(path.clone())
+                    }
                     (false, false) => {
                         if !adds {
                             self.chosen.clear();
@@ -275,8 +292,9 @@ impl Picker {
     fn save(&mut self) -> Said {
         let Some(Pick::Place(sound)) = &self.pick else { return Err(String::new()) };
         let name = self.name.trim();
-        let name = if name.ends_with(".toml") { name.to_owned() } else { format!("{name}.toml") };
-        if name == ".toml" || name.contains(['/', '\\']) {
+        let is_sound = name.to_lowercase().ends_with(".toml");
+        let name = if is_sound { name.to_owned() } else { format!("{name}.toml") };
+        if name.len() == ".toml".len() || name.contains(['/', '\\', ':']) {
             return Err("expected the name of a file".to_owned());
         }
         let path = self.listing.folder.join(name);

@@ -22,7 +22,7 @@ impl Stage {
         self.harness.run_steps(3);
     }
 
-    fn can(&self, button: &str) -> bool {
+    pub(super) fn can(&self, button: &str) -> bool {
         !self.harness.get_by_role_and_label(egui::Role::Button, button).accesskit_node().is_disabled()
     }
 

@@ -284,7 +284,7 @@ impl Window {
             self.over = Some(Over::Manual);
         }
         if ui.input(|input| input.key_pressed(Key::Escape)) {
-            self.over = None;
+            self.over = if matches!(self.over, Some(Over::Files)) { self.under } else { None };
         }
         if let Some(pick) = controls.interaction.pick.take() {
             self.picker.open(pick, self.browser.library());
