@@ -44,7 +44,8 @@ pub enum Change {
     NextNote,
     /// At once, smoothed over this many milliseconds.
     Smoothed(u16),
-    /// At once, on the output as a whole. Routes move it for all notes, by what is not of one note's time.
+    /// At once, on the output as a whole. Routes move quantities among these for all notes, but not by oscillators, envelopes or
+    /// the release.
     AtOnce,
 }
 

@@ -95,8 +95,8 @@ impl Source {
         ((pitch - 60.0) / 60.0).clamp(-1.0, 1.0) as f32
     }
 
-    /// Whether it changes with time alone, for each note by itself: an oscillator or an envelope.
-    pub fn is_moving(self) -> bool {
+    /// Whether it changes with time alone: an oscillator or an envelope.
+    pub const fn is_moving(self) -> bool {
         use Source::{Envelope1, Envelope2, Lfo1, Lfo2, Lfo3};
         matches!(self, Lfo1 | Lfo2 | Lfo3 | Envelope1 | Envelope2)
     }

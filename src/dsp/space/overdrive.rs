@@ -101,7 +101,8 @@ impl Overdrive {
 
     /// What becomes of a steady sample: `f`.
     pub(crate) fn steady(decibels: f32, sample: f32) -> f32 {
-        let square = Self::hardness(decibels) * Self::hardness(decibels);
+        let hardness = Self::hardness(decibels);
+        let square = hardness * hardness;
         sample * (1.0 + square).sqrt() / (1.0 + square * sample * sample).sqrt()
     }
 

@@ -29,8 +29,16 @@ pub(crate) const fn bit(source: Source) -> u32 {
 }
 
 /// The sources that change with time alone.
-pub(super) const MOVING: u32 =
-    bit(Source::Lfo1) | bit(Source::Lfo2) | bit(Source::Lfo3) | bit(Source::Envelope1) | bit(Source::Envelope2);
+pub(super) const MOVING: u32 = {
+    let (mut bits, mut place) = (0, 0);
+    while place < SOURCES {
+        if Source::ALL[place].is_moving() {
+            bits |= bit(Source::ALL[place]);
+        }
+        place += 1;
+    }
+    bits
+};
 
 /// A route as the bus evaluates it.
 #[derive(Clone, Copy, Debug)]

@@ -11,7 +11,7 @@ use crate::sound::tuning::Pitch;
 impl Synth {
     /// Handles one event, at the frame that is rendered next.
     pub fn handle(&mut self, event: &Event) {
-        // Hosts send modulation beyond a knob's end, or do not, as their blocks have it.
+        // An offset that changes nothing must not cause a control tick, since hosts repeat offsets at the borders of blocks.
         if let EventKind::Modulate { id: None, param, offset } = event.kind
             && self.instruments.offset(param) == finite(offset).clamp(-1.0, 1.0)
         {

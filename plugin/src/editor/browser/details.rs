@@ -4,9 +4,9 @@ use super::sounds::Sounds;
 use crate::editor::controls::{Controls, Hint, Pick, Said};
 use crate::editor::theme::{SMALL, TEXT, TITLE_HEIGHT, font};
 use crate::editor::widgets::buttons::{Look, button};
-use crate::editor::widgets::text::{line, name_field, paragraph, take_over};
+use crate::editor::widgets::text::{is_entered, line, name_field, paragraph, take_over};
 use crate::loaded::Loaded;
-use egui::{Align2, Id, Key, Rect, TextEdit, Ui, pos2, vec2};
+use egui::{Align2, Id, Rect, TextEdit, Ui, pos2, vec2};
 use sprung::preset::catalogue::Listed;
 use sprung::preset::library::Library;
 use sprung::preset::{Playable, Preset};
@@ -121,10 +121,7 @@ impl Details {
                 top += paragraph(ui.painter(), place, &text, SMALL + 0.5, palette.muted).max(6.0) + 2.0;
             }
         }
-        let enters = |response: &egui::Response| {
-            response.lost_focus() && response.ctx.input(|input| input.key_pressed(Key::Enter))
-        };
-        let mut is_entered = false;
+        let mut enters = false;
         // Another sound may have been loaded since, by other ways than this list.
         self.about.take_if(|about| !Arc::ptr_eq(&about.loaded, &controls.params.loaded()));
         if let Some(about) = &mut self.about {
@@ -140,7 +137,7 @@ impl Details {
                 let place = place.with_min_x(place.left() + 28.0);
                 let response = ui.put(place, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
                 name_field(&response, name, text);
-                is_entered |= enters(&response);
+                enters |= is_entered(&response);
             }
         }
         let raised = if self.about.is_some() { ABOUT } else { 0.0 };
@@ -163,7 +160,7 @@ impl Details {
             self.about = Some(About::of(controls));
             ui.ctx().request_repaint();
         }
-        is_entered |= enters(&response);
+        enters |= is_entered(&response);
         let response = button(ui, elsewhere, "…", "Save in another folder", Look::Plain, palette);
         if response.hovered() {
             *controls.hint = Hint::new("Save in another folder", "A copy, in any folder.");
@@ -183,11 +180,11 @@ impl Details {
             let folder = sounds.library.as_ref().map(|library| library.presets_folder().display().to_string());
             *controls.hint = Hint::new("Save", folder.unwrap_or_default());
         }
-        if is_entered || response.clicked() {
+        if enters || response.clicked() {
             let outcome = self.save(sounds, controls);
             // Enter is pressed again, or the name is corrected.
-            self.takes_name = is_entered && !outcome.is_stale;
-            return Some(Outcome { is_done: is_entered && outcome.is_stale, ..outcome });
+            self.takes_name = enters && !outcome.is_stale;
+            return Some(Outcome { is_done: enters && outcome.is_stale, ..outcome });
         }
         let look = if own.is_some() { Look::Plain } else { Look::Disabled };
         if button(ui, rename, "Rename", "Give your sound this name", look, palette).clicked()

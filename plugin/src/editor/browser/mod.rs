@@ -11,7 +11,7 @@ use crate::editor::keyboard::audition::Audition;
 use crate::editor::theme::{GAP, PADDING, Palette, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::progress::{Face, PAUSE, paint};
-use crate::editor::widgets::text::{name_field, take_over};
+use crate::editor::widgets::text::{is_entered, name_field, take_over};
 use crate::files::read;
 use crate::link::Link;
 use details::{Details, Outcome};
@@ -249,7 +249,7 @@ impl Browser {
             take_over(ui, field, &self.words);
         }
         let pressed = |key| ui.input(|input| input.key_pressed(key));
-        if response.lost_focus() && pressed(Key::Enter) && self.words.ends_with(".toml") {
+        if is_entered(&response) && self.words.ends_with(".toml") {
             return Command::File;
         }
         match (pressed(Key::ArrowDown), pressed(Key::ArrowUp)) {

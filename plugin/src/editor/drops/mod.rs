@@ -20,24 +20,28 @@ pub(super) fn dropped(ui: &Ui) -> Vec<PathBuf> {
     ui.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect())
 }
 
-fn ending(path: &Path) -> String {
-    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
+/// Whether a file has one of these endings, in small or capital letters.
+pub(super) fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    endings.iter().any(|wanted| ending.eq_ignore_ascii_case(wanted))
 }
 
 /// Whether the file's extension is that of a recording.
 pub(super) fn is_recording(path: &Path) -> bool {
-    RECORDINGS.contains(&ending(path).as_str())
+    has_ending(path, &RECORDINGS)
 }
 
 /// Handles a dropped file that is not a recording. Returns a message.
 pub(super) fn take(path: &Path, library: Option<&Library>, controls: &mut Controls) -> Said {
-    match ending(path).as_str() {
-        "scl" | "kbm" => tuning::take(path, controls),
-        "toml" => sound(path, library, controls),
-        _ => Err(format!(
+    if has_ending(path, &SCALES) {
+        tuning::take(path, controls)
+    } else if has_ending(path, &SOUNDS) {
+        sound(path, library, controls)
+    } else {
+        Err(format!(
             "{}: expected a recording (.wav, .flac …), a preset or kit (.toml), a scale (.scl) or a keyboard mapping (.kbm)",
             path.display()
-        )),
+        ))
     }
 }
 

@@ -6,9 +6,9 @@ use crate::editor::controls::{Controls, Hint, Pick, Said};
 use crate::editor::keyboard::grid::{Cell, KeyGrid};
 use crate::editor::theme::{GAP, PADDING, SMALL, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
-use crate::editor::widgets::text::{line, name_field, paragraph};
+use crate::editor::widgets::text::{is_entered, line, name_field, paragraph};
 use crate::files;
-use egui::{Align2, Id, Key, Rect, TextEdit, Ui, pos2, vec2};
+use egui::{Align2, Id, Rect, TextEdit, Ui, pos2, vec2};
 use sprung::params::Param;
 use sprung::preset::OwnTuning;
 use sprung::sound::Tuning;
@@ -56,7 +56,7 @@ impl TuningPage {
         let edit = TextEdit::singleline(&mut self.path).id(Id::unique("scale path")).hint_text(".scl or .kbm");
         let response = ui.put(field, edit.font(font(SMALL)).margin(vec2(4.0, 4.0)));
         name_field(&response, "Path of a scale or mapping", &self.path);
-        if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter)) {
+        if is_entered(&response) {
             message = Some(take(Path::new(self.path.trim()), controls));
         }
         let look = if own.is_some() { Look::Plain } else { Look::Disabled };

@@ -1,10 +1,11 @@
 //! The folders and files in a folder, read on a thread of their own: a folder on a network may take long.
 
 use crate::editor::background::{Background, Progress};
+use crate::editor::drops::has_ending;
 use sprung::text::printable;
 use sprung::{Error, Result};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Folders of the user's that are offered, if they are there.
 const OF_USER: [&str; 4] = ["Desktop", "Documents", "Downloads", "Music"];
@@ -58,18 +59,12 @@ fn list(path: PathBuf, endings: &[&str], own: Option<PathBuf>, progress: &Progre
             entries.push(entry_of(&name.to_string_lossy(), path, is_folder));
         }
     }
-    entries.sort_by_key(|entry| (!entry.is_folder, entry.name.to_lowercase()));
+    entries.sort_by_cached_key(|entry| (!entry.is_folder, entry.name.to_lowercase()));
     Ok(Listing { folder, entries, file: is_file.then_some(path), places: places(own) })
 }
 
 fn entry_of(name: &str, path: PathBuf, is_folder: bool) -> Entry {
     Entry { name: printable(name).into_owned(), path, is_folder }
-}
-
-/// Whether a file has one of these endings, in small or capital letters.
-fn has_ending(path: &Path, endings: &[&str]) -> bool {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    endings.iter().any(|wanted| ending.eq_ignore_ascii_case(wanted))
 }
 
 /// The user's folders, that of the user's sounds, and the roots of the system.

@@ -10,9 +10,9 @@ use super::drops;
 use super::theme::{GAP, PADDING, SMALL, TEXT, font};
 use super::widgets::buttons::{Look, button};
 use super::widgets::progress::PAUSE;
-use super::widgets::text::{line, name_field};
+use super::widgets::text::{is_entered, line, name_field};
 use crate::editor::background::Background;
-use egui::{Align2, Id, Key, Rect, Response, Role, ScrollArea, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+use egui::{Align2, Id, Rect, Role, ScrollArea, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 use listing::{Entry, Listing};
 use sprung::preset::library::{Library, export};
 use sprung::text::slug;
@@ -139,7 +139,7 @@ impl Picker {
         let edit = TextEdit::singleline(&mut self.path).id(Id::unique("path")).hint_text("a folder or file");
         let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
         name_field(&response, "Path of a folder or file", &self.path);
-        if is_entered(ui, &response) {
+        if is_entered(&response) {
             to = Some(PathBuf::from(self.path.trim()));
         }
         if button(ui, cancel, "Cancel", "Choose no file", Look::Plain, palette).clicked() {
@@ -169,7 +169,7 @@ impl Picker {
             let is_there = self.work.is_none() && self.path == self.listing.folder.display().to_string();
             let look = if is_there { Look::Main } else { Look::Disabled };
             let is_asked = button(ui, main, text, "Save in this folder", look, palette).clicked();
-            if is_there && (is_asked || is_entered(ui, &response)) {
+            if is_there && (is_asked || is_entered(&response)) {
                 match self.save() {
                     Ok(message) => return Some(Picked::Saved(message)),
                     Err(message) => self.complaint = message,
@@ -308,9 +308,4 @@ impl Picker {
             Err(error) => Err(error.to_string()),
         }
     }
-}
-
-/// Whether Enter was pressed in a field.
-fn is_entered(ui: &Ui, response: &Response) -> bool {
-    response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
 }

@@ -3,7 +3,7 @@
 use crate::editor::theme::font;
 use egui::text::{CCursor, CCursorRange, LayoutJob, TextWrapping};
 use egui::text_edit::TextEditState;
-use egui::{Align2, Color32, Id, Painter, Rect, Response, Ui, WidgetInfo};
+use egui::{Align2, Color32, Id, Key, Painter, Rect, Response, Ui, WidgetInfo};
 
 /// Factors for the size of text that would be too wide: the first with which it fits, or else the last.
 const SHRINK: [f32; 3] = [1.0, 0.9, 0.82];
@@ -32,6 +32,11 @@ pub(crate) fn paragraph(painter: &Painter, rect: Rect, text: &str, size: f32, co
     let height = galley.size().y;
     painter.with_clip_rect(rect.intersect(painter.clip_rect())).galley(rect.min, galley, colour);
     height
+}
+
+/// Whether Enter ended the typing in a text field.
+pub(crate) fn is_entered(response: &Response) -> bool {
+    response.lost_focus() && response.ctx.input(|input| input.key_pressed(Key::Enter))
 }
 
 /// Gives a text field the focus, with its text selected, so that what is typed replaces it.

@@ -58,7 +58,7 @@ impl BoxBody {
         Self { vowels, most_gain, least_bandwidth }
     }
 
-    /// A violin: of a viola at a size of 1.2, of a cello at 2.7, of a double bass at 4.
+    /// A violin: of a viola at a size of 1.22, of a cello at 2.7, of a double bass at 4.
     pub fn violin() -> &'static Self {
         &BODIES[0]
     }
@@ -73,12 +73,12 @@ impl BoxBody {
         &BODIES[2]
     }
 
-    /// A man's vocal tract, from *u* by *o*, *a* and *e* to *i*; a woman's at a size of 0.85.
+    /// A man's vocal tract, from *u* by *o*, *a* and *e* to *i*; a woman's at a size of 0.87.
     pub fn voice() -> &'static Self {
         &BODIES[3]
     }
 
-    /// The bell of a trumpet: of a trombone at a size of 2.3, of a bassoon at 2.7, of a horn at 3.5, of a tuba at 5.
+    /// The bell of a trumpet: of a trombone at a size of 2.3, of a bassoon at 2.7, of a horn at 3, of a tuba at 5.
     pub fn horn() -> &'static Self {
         &BODIES[4]
     }
@@ -96,7 +96,7 @@ impl BoxBody {
         let second = (first + 1).min(self.vowels.len() - 1);
         let share = place - first as f64;
         let between = move |(a, b): (&Resonance, &Resonance)| {
-            let ratio = |a: f64, b: f64| a * pow(b / a, share);
+            let ratio = |a: f64, b: f64| if share == 0.0 { a } else { a * pow(b / a, share) };
             let gain = a.gain + share * (b.gain - a.gain);
             let (frequency, bandwidth) = (ratio(a.frequency, b.frequency), ratio(a.bandwidth, b.bandwidth));
             Resonance { frequency, bandwidth, gain, ..*a }

@@ -27,7 +27,7 @@ const FAINTEST_INPUT: f32 = 1e-15;
 /// masses. While nothing comes in, they rest once they are certainly below −120 dBFS.
 ///
 /// A frame leaves a mass of radius `r` and gain `g` at `r |z| + 2 g (1 − r) |input|` at most. So while the input is at most `p`,
-/// no mass that starts at rest exceeds `2 g p`, however size and vowel move. Real-time safe once made. The output does not depend,
+/// no mass that starts at rest exceeds `2 g p` with the largest `g` on the way, however size and vowel move. Real-time safe once made. The output does not depend,
 /// bit for bit, on the block size, and it is finite for finite input.
 ///
 /// ```
@@ -295,9 +295,13 @@ impl Soundbox {
 
     /// Upper bound of the root of the energy from now on, while the magnitude of the input is at most `peak`.
     fn most(&self, peak: f64) -> f64 {
-        let bodies = [Some(self.body), self.next].into_iter().flatten();
-        let gain = bodies.map(|body| body.most_gain()).fold(0.0, f64::max);
+        let gain = self.bodies().map(|body| body.most_gain()).fold(0.0, f64::max);
         self.amplitude + 2.0 * gain * peak.max(self.input.into())
+    }
+
+    /// The present body and the next.
+    fn bodies(&self) -> impl Iterator<Item = &'static BoxBody> + use<> {
+        [Some(self.body), self.next].into_iter().flatten()
     }
 
     fn frames_moving(&self) -> u64 {
@@ -311,8 +315,7 @@ impl Soundbox {
         if self.is_off() || !self.is_awake && frames == 0 {
             return frames;
         }
-        let bodies = [Some(self.body), self.next].into_iter().flatten();
-        let bandwidth = bodies.map(|body| body.least_bandwidth()).fold(f64::INFINITY, f64::min);
+        let bandwidth = self.bodies().map(|body| body.least_bandwidth()).fold(f64::INFINITY, f64::min);
         let size = exp2(self.size.after(0).max(self.size.target()).into());
         let rate = PI * bandwidth / (size * self.sample_rate);
         let rings = (log(self.loudest(self.most(peak)) / SILENCE) / rate).max(0.0) as u64;
