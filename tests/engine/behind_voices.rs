@@ -375,3 +375,63 @@ fn routes_move_effects() {
     bits(&mut other, &[on(0, 60), off(100, 60)]);
     assert!(bits(&mut synth, &[on(0, 60)]) == bits(&mut other, &[on(0, 60)]));
 }
+
+/// A strike brings the routes of its own sound: what those of the sound before have moved returns.
+#[test]
+fn each_strike_of_a_kit_brings_the_routes_of_its_sound() {
+    let routed = |param| Patch { routes: Routes::NONE, ..dry() }.with_route(0, Source::Macro1, param, 100.0);
+    let kit = |patches: [Patch; 2]| {
+        let sounds = patches.map(|patch| Arc::new(Sound::new(patch))).into();
+        Arc::new(Kit::new(String::new(), sounds, (0..128).map(|key| Some(Pad::of(key % 2))).collect()))
+    };
+    let bits = |patches, events: &[Event]| {
+        let mut synth = Synth::new(RATE, 1);
+        synth.set_kit(&kit(patches));
+        in_blocks(events, 60_000, 512, |events, left, right| synth.process(events, left, right))
+    };
+    let both = [routed(Param::ToneHigh), routed(Param::Drive)];
+    let (up, low, high) = (set(0, Param::Macro1, 90.0), on(0, 60), on(40_000, 61));
+    let after = bits(both.clone(), &[up, low, high]);
+    assert!(after[80_000..] == bits(both, &[up, high])[80_000..], "after silence");
+    // A macro that moves in silence counts from the next strike on, and an event that moves nothing changes no bit.
+    let wavering = dry().with(Param::TremoloDepth, 80.0).with(Param::TremoloRate, 3.0);
+    let wavering = wavering.with_route(0, Source::Macro1, Param::ToneHigh, 100.0);
+    let idle = event(39_000, EventKind::Control { controller: 20, value: 0.3 });
+    let played = |events: &[Event]| synth_bits(&wavering, events, 60_000, 512).0;
+    assert!(played(&[up, low, high]) == played(&[up, low, idle, high]), "the motor of the tremolo continues");
+}
+
+#[test]
+fn a_soundbox_alone_outlives_another_sample_rate() {
+    let mut synth = Synth::new(44_100.0, 1);
+    synth.set_patch(&dry().with(Param::Soundbox, GUITAR));
+    synth.prepare(RATE);
+    let bits = in_blocks(&[on(0, 60)], 9000, 512, |events, left, right| synth.process(events, left, right));
+    assert!(bits == synth_bits(&dry().with(Param::Soundbox, GUITAR), &[on(0, 60)], 9000, 512).0);
+}
+
+/// Offsets of the host and values that are set together reach routes to effects at once.
+#[test]
+fn routes_hold_after_all_values_are_set() {
+    let patch = Patch { routes: Routes::NONE, ..dry() }.with(Param::ToneHigh, -18.0);
+    let patch = patch.with_route(0, Source::Macro1, Param::ToneHigh, 100.0);
+    let mut values = patch.values;
+    values.set(Param::Macro1, 80.0);
+    let bits = |set: &dyn Fn(&mut Synth)| {
+        let mut synth = Synth::new(RATE, 1);
+        synth.set_patch(&patch);
+        let (mut left, mut right) = (vec![0.0; 512], vec![0.0; 512]);
+        synth.process(&[on(0, 60)], &mut left, &mut right);
+        set(&mut synth);
+        in_blocks(&[], 6000, 512, |events, left, right| synth.process(events, left, right))
+    };
+    let together = bits(&|synth| synth.set_values(&values));
+    assert!(
+        together
+            == bits(&|synth| {
+                synth.set_values(&values);
+                synth.handle(&set(0, Param::Macro1, 80.0));
+            })
+    );
+    assert!(together != bits(&|synth| synth.set_values(&patch.values)));
+}

@@ -108,7 +108,7 @@ impl Ensemble {
         self.parts.iter_mut().for_each(|part| part.synth.reserve(sounds));
     }
 
-    /// Makes room on every channel for sympathetic strings and for any body of the space, as [`Synth::reserve_space`]: 4 MB
+    /// Makes room on every channel for soundboxes, sympathetic strings and any body of the space, as [`Synth::reserve_space`]: 4 MB
     /// for each channel. Kits and programs that use them reserve it themselves. Allocates.
     pub fn reserve_space(&mut self) {
         self.parts.iter_mut().for_each(|part| part.synth.reserve_space());

@@ -51,7 +51,7 @@ impl SharedSpace {
         }
         let mut space = Space::new(sample_rate);
         space.reserve();
-        space.set_all(&values, true);
+        space.set(&values, true);
         Some(Self {
             space,
             sends: [Ramp::at_rest(FULL_SEND * DEFAULT_REVERB_SEND); 16],

@@ -35,12 +35,6 @@ impl Behind {
         }
     }
 
-    /// The parameters behind the voices that routes move.
-    pub(crate) fn params(&self) -> impl Iterator<Item = Param> {
-        let behind = self.bus.destinations().iter().filter(|destination| destination.target == Target::Behind);
-        behind.map(|destination| destination.param)
-    }
-
     /// Calls `tell` with each parameter behind the voices that routes move and its value. `value` reads the parameters.
     pub(crate) fn each_value(
         &self,

@@ -41,30 +41,51 @@ pub(crate) struct Space {
     is_on: bool,
     /// Whether any section still sounds or is still moving to another setting.
     is_awake: bool,
+    /// The parameters that the sections have; none for sections that were made just now.
+    values: Option<Values>,
 }
 
-/// Parameters of the sections, each after those that it needs. [`Param::Space`] also sets size, material and mix, and
-/// [`Param::Soundbox`] its mix.
-const ALL: [Param; 19] = [
-    Param::Soundbox,
-    Param::SoundboxSize,
-    Param::SoundboxVowel,
-    Param::StringsTuning,
-    Param::StringsTune,
-    Param::StringsLowDecay,
-    Param::StringsHighDecay,
-    Param::StringsLevel,
-    Param::TremoloRate,
-    Param::TremoloStereo,
-    Param::TremoloDepth,
-    Param::Drive,
-    Param::ToneLow,
-    Param::ToneHigh,
-    Param::SpaceLowDecay,
-    Param::SpaceHighDecay,
-    Param::SpacePreDelay,
-    Param::Space,
-    Param::StereoWidth,
+/// The sections, in the order of the signal.
+#[derive(Clone, Copy)]
+enum Section {
+    Soundbox,
+    Strings,
+    Tremolo,
+    Drive,
+    Tone,
+    Reverb,
+    Width,
+}
+
+/// The parameters of each section: what switches it on comes last, so that all else is already set.
+const SECTIONS: [(Section, &[Param]); 7] = [
+    (Section::Soundbox, &[Param::SoundboxSize, Param::SoundboxVowel, Param::Soundbox, Param::SoundboxMix]),
+    (
+        Section::Strings,
+        &[
+            Param::StringsTuning,
+            Param::StringsTune,
+            Param::StringsLowDecay,
+            Param::StringsHighDecay,
+            Param::StringsLevel,
+        ],
+    ),
+    (Section::Tremolo, &[Param::TremoloRate, Param::TremoloStereo, Param::TremoloDepth]),
+    (Section::Drive, &[Param::Drive]),
+    (Section::Tone, &[Param::ToneLow, Param::ToneHigh]),
+    (
+        Section::Reverb,
+        &[
+            Param::SpaceLowDecay,
+            Param::SpaceHighDecay,
+            Param::SpacePreDelay,
+            Param::Space,
+            Param::SpaceSize,
+            Param::SpaceMaterial,
+            Param::SpaceMix,
+        ],
+    ),
+    (Section::Width, &[Param::StereoWidth]),
 ];
 
 /// Whether these values need room for bodies. Real-time safe.
@@ -85,11 +106,24 @@ impl Space {
             width: Width::new(sample_rate),
             is_on: false,
             is_awake: false,
+            values: None,
         }
     }
 
+    /// Another with the same room, at another sample rate. Allocates.
+    pub(crate) fn at_rate(&self, sample_rate: f64) -> Self {
+        let mut other = Self::new(sample_rate);
+        if self.soundbox.is_some() {
+            other.reserve_soundbox();
+        }
+        if self.resonant.is_some() {
+            other.reserve();
+        }
+        other
+    }
+
     /// Makes room for what a kit has: a soundbox, strings and a space, from the start or when a route brings in the strings. Follow
-    /// with [`Space::set_all`]. Allocates if it makes room.
+    /// with [`Space::set`]. Allocates if it makes room.
     pub(crate) fn reserve_for(&mut self, kit: &Kit) {
         let is_to_strings = |(_, route): (usize, Route)| route.destination == Param::StringsLevel;
         let routes = kit.sounds().iter().map(|sound| &sound.patch().routes);
@@ -101,33 +135,34 @@ impl Space {
     }
 
     fn reserve_soundbox(&mut self) {
-        let Self { sample_rate, soundbox, .. } = self;
-        soundbox.get_or_insert_with(|| Box::new(Soundbox::new(*sample_rate)));
-    }
-
-    /// Makes room for any body, if there is none. Follow with [`Space::set_all`]. Allocates.
-    pub(crate) fn reserve(&mut self) {
-        self.reserve_soundbox();
-        if self.resonant.is_none() {
-            self.resonant = Some(Box::new(Resonant::new(self.sample_rate)));
+        if self.soundbox.is_none() {
+            (self.soundbox, self.values) = (Some(Box::new(Soundbox::new(self.sample_rate))), None);
         }
     }
 
-    /// Whether there is room for bodies. Without it they stay off.
-    pub(crate) fn has_room(&self) -> bool {
-        self.resonant.is_some()
+    /// Makes room for any body, if there is none. Follow with [`Space::set`]. Allocates.
+    pub(crate) fn reserve(&mut self) {
+        self.reserve_soundbox();
+        if self.resonant.is_none() {
+            (self.resonant, self.values) = (Some(Box::new(Resonant::new(self.sample_rate))), None);
+        }
     }
 
-    /// Applies one parameter: within 20 ms, or `at_once`, which is meant for when neither the voices nor the effects sound.
-    pub(crate) fn set(&mut self, param: Param, values: &Values, at_once: bool) {
-        self.follow(param, values);
-        self.finish(at_once);
-    }
-
-    /// Applies all parameters, in the same way.
-    pub(crate) fn set_all(&mut self, values: &Values, at_once: bool) {
-        ALL.into_iter().for_each(|param| self.follow(param, values));
-        self.finish(at_once);
+    /// Applies the parameters that have changed: within 20 ms, or `at_once`, which is meant for when neither the voices nor the
+    /// effects sound.
+    pub(crate) fn set(&mut self, values: &Values, at_once: bool) {
+        let known = self.values.replace(*values);
+        let has_changed = |param: &&Param| known.is_none_or(|known| known.get(**param) != values.get(**param));
+        for (section, params) in SECTIONS {
+            let mut changed = params.iter().filter(has_changed).peekable();
+            if changed.peek().is_some() {
+                changed.for_each(|param| self.follow(*param, values));
+                if at_once {
+                    self.reset_section(section);
+                }
+            }
+        }
+        self.look();
     }
 
     fn follow(&mut self, param: Param, values: &Values) {
@@ -153,24 +188,23 @@ impl Space {
         }
     }
 
-    fn finish(&mut self, at_once: bool) {
-        if at_once { self.reset() } else { self.look() }
-    }
-
     /// Silences all sections and sets all smoothed values to their targets.
     pub(crate) fn reset(&mut self) {
-        if let Some(soundbox) = &mut self.soundbox {
-            soundbox.reset();
-        }
-        if let Some(resonant) = &mut self.resonant {
-            resonant.strings.reset();
-            resonant.reverb.reset();
-        }
-        self.tremolo.reset();
-        self.drive.reset();
-        self.tone.reset();
-        self.width.reset();
+        SECTIONS.into_iter().for_each(|(section, _)| self.reset_section(section));
         self.look();
+    }
+
+    fn reset_section(&mut self, section: Section) {
+        let (soundbox, resonant) = (self.soundbox.as_mut(), self.resonant.as_mut());
+        match section {
+            Section::Soundbox => soundbox.into_iter().for_each(|soundbox| soundbox.reset()),
+            Section::Strings => resonant.into_iter().for_each(|resonant| resonant.strings.reset()),
+            Section::Tremolo => self.tremolo.reset(),
+            Section::Drive => self.drive.reset(),
+            Section::Tone => self.tone.reset(),
+            Section::Reverb => resonant.into_iter().for_each(|resonant| resonant.reverb.reset()),
+            Section::Width => self.width.reset(),
+        }
     }
 
     /// Updates `is_on` and `is_awake`.
@@ -263,9 +297,11 @@ mod tests {
 
     #[test]
     fn all_that_is_behind_voices_is_followed() {
-        let rows: Vec<Param> = PARAMS.iter().map(|info| info.param).filter(|param| param.is_behind_voices()).collect();
-        let with_space = [Param::SoundboxMix, Param::SpaceSize, Param::SpaceMaterial, Param::SpaceMix];
-        let followed: Vec<Param> = ALL.into_iter().chain(with_space).collect();
-        assert!(rows.len() == followed.len() && rows.iter().all(|param| followed.contains(param)), "{rows:?}");
+        let mut rows: Vec<Param> =
+            PARAMS.iter().map(|info| info.param).filter(|param| param.is_behind_voices()).collect();
+        let mut followed = SECTIONS.map(|(_, params)| params).concat();
+        rows.sort_by_key(|param| *param as usize);
+        followed.sort_by_key(|param| *param as usize);
+        assert_eq!(rows, followed);
     }
 }

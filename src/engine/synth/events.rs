@@ -52,9 +52,6 @@ impl Synth {
             EventKind::Param { param, value } => {
                 self.instruments.set(param, value, self.clock);
                 self.follow_param();
-                if param.is_behind_voices() {
-                    self.space.set(param, self.instruments.values(), was_silent);
-                }
             }
             EventKind::Modulate { id: None, param, offset } => {
                 self.instruments.modulate(param, finite(offset).clamp(-1.0, 1.0), self.clock);
@@ -76,7 +73,7 @@ impl Synth {
             EventKind::Choke { group } => self.manager.choke(group),
             EventKind::Program(_) => {}
         }
-        self.move_effects(was_silent);
+        self.set_effects(was_silent);
     }
 
     /// Presses a key. The channel and the synth complete the note.
@@ -119,12 +116,8 @@ impl Synth {
         }
         if self.manager.note_on(instrument, note) {
             instrument.last_pitch = Some(instrument.pitch(&note));
-            let was_on = self.behind.is_on();
             self.behind.strike(&instrument.bus, &instrument.struck(&note));
             self.newest = note;
-            if was_on && !self.behind.is_on() {
-                self.space.set_all(self.instruments.values(), false);
-            }
         }
         if let Some(pads) = &mut self.pads {
             let is_sounding = |serial| self.manager.sounding_voices().any(|(note, _)| note.serial == serial);

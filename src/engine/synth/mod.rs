@@ -112,18 +112,17 @@ impl Synth {
             pads: None,
         };
         synth.configure_manager();
-        synth.follow_space();
+        synth.set_effects(true);
         synth
     }
 
     /// Changes the sample rate and restarts the synth. It keeps the kit, its parameters, the tuning and the reserved
     /// room.
     pub fn prepare(&mut self, sample_rate: f64) {
-        let has_bodies = self.space.has_room();
-        *self = Self::with_own_voices(self.instruments.at_rate(allowed(sample_rate)));
-        if has_bodies {
-            self.reserve_space();
-        }
+        let sample_rate = allowed(sample_rate);
+        let space = self.space.at_rate(sample_rate);
+        *self = Self { space, ..Self::with_own_voices(self.instruments.at_rate(sample_rate)) };
+        self.set_effects(true);
     }
 
     /// Makes room for kits of up to `sounds` sounds, so that [`Synth::set_kit`] does not allocate. Allocates.
@@ -131,11 +130,11 @@ impl Synth {
         self.instruments.reserve(sounds);
     }
 
-    /// Makes room for sympathetic strings and for any body of the space: 4 MB. Without room these stay off, unless a kit
+    /// Makes room for soundboxes, sympathetic strings and any body of the space: 4 MB. Without room these stay off, unless a kit
     /// has them when it is set. Allocates; the first call in a process takes some 10 ms.
     pub fn reserve_space(&mut self) {
         self.space.reserve();
-        self.follow_space();
+        self.set_effects(self.is_silent());
     }
 
     /// Silences everything and resets controllers, modulation and tempo. The kit, its parameters and the tuning stay.
@@ -145,8 +144,9 @@ impl Synth {
         self.limiter.reset();
         self.instruments.reset();
         self.behind = Behind::NONE;
-        self.space.set_all(self.instruments.values(), true);
+        self.space.reset();
         self.channels = Channels::new(self.instruments.sample_rate());
+        self.set_effects(true);
         (self.note_serial, self.clock, self.needs_control) = (0, 0, false);
         self.configure_manager();
     }
@@ -173,16 +173,17 @@ impl Synth {
     }
 
     /// Plays another kit from the next note on. Sounding notes keep their sound. Parameters start again from
-    /// [`Kit::values`]. The effects after the voices change for all notes, within 20 ms.
+    /// [`Kit::values`]. The effects after the voices change for all notes, within 20 ms; routes move them from the next note on.
     ///
-    /// Real-time safe if there is room for the kit's sounds ([`Synth::reserve`]) and for its strings and space, if it has
+    /// Real-time safe if there is room for the kit's sounds ([`Synth::reserve`]) and for its soundbox, strings and space, if it has
     /// any ([`Synth::reserve_space`]), and if someone else holds the previous kit ([`Collector`](crate::sound::Collector)), so
     /// that it is not freed here.
     pub fn set_kit(&mut self, kit: &Arc<Kit>) {
         self.instruments.set_kit(kit, self.clock);
         self.make_room_for(kit);
         self.configure_manager();
-        self.follow_space();
+        self.behind = Behind::NONE;
+        self.set_effects(self.is_silent());
     }
 
     /// Makes room for the effects of a kit that will be set. Allocates.
@@ -204,7 +205,7 @@ impl Synth {
         }
         self.needs_control = true;
         self.configure_manager();
-        self.follow_space();
+        self.set_effects(self.is_silent());
     }
 
     /// The kit in use. Real-time safe.
@@ -310,18 +311,17 @@ impl Synth {
         &mut self.manager
     }
 
-    /// Applies the parameters of the effects: at once if nothing sounds.
-    fn follow_space(&mut self) {
-        let at_once = self.is_silent();
-        self.space.set_all(self.instruments.values(), at_once);
+    /// Gives the effects their parameters, with what routes make of them.
+    fn set_effects(&mut self, at_once: bool) {
+        match self.moved_effects() {
+            Some(moved) => self.space.set(&moved, at_once),
+            None => self.space.set(self.instruments.values(), at_once),
+        }
     }
 
-    /// Applies what routes make of the parameters of the effects.
-    fn move_effects(&mut self, at_once: bool) {
-        if !self.behind.is_on() {
-            return;
-        }
-        let Some(instrument) = self.instruments.of_note(&self.newest) else { return };
+    /// What routes make of the parameters of the effects, if any route leads there.
+    fn moved_effects(&self) -> Option<Values> {
+        let instrument = self.instruments.of_note(&self.newest).filter(|_| self.behind.is_on())?;
         let positions = self.channels.wheels(self.newest.channel);
         let positions = positions.positions(self.channels.brightness(self.newest.channel).into(), |_| true);
         let mut moved = *self.instruments.values();
@@ -330,7 +330,7 @@ impl Synth {
             false => instrument.knobs.modulated(param),
         };
         self.behind.each_value(&positions, value, |param, value| moved.set(param, value));
-        self.behind.params().for_each(|param| self.space.set(param, &moved, at_once));
+        Some(moved)
     }
 
     /// Applies the parameters that belong to the voice manager.

@@ -290,7 +290,9 @@ impl Soundbox {
     fn loudest(&self, amplitude: f64) -> f64 {
         // Each side's gain of a mass is at most √2 (Cauchy and Schwarz).
         let gains = sqrt(2.0 * self.bank.len() as f64);
-        f64::from(self.wet.after(0).max(self.wet.target())) * gains * amplitude
+        // Another body that waits will be heard at the full level.
+        let waiting = self.next.map_or(0.0, |_| self.levels[1]);
+        f64::from(self.wet.after(0).max(self.wet.target()).max(waiting)) * gains * amplitude
     }
 
     /// Upper bound of the root of the energy from now on, while the magnitude of the input is at most `peak`.
@@ -306,7 +308,9 @@ impl Soundbox {
 
     fn frames_moving(&self) -> u64 {
         let settings = [&self.size, &self.vowel, &self.dry, &self.wet];
-        settings.map(Smoothed::frames_left).into_iter().max().map_or(0, u64::from)
+        let moving = settings.map(Smoothed::frames_left).into_iter().max().map_or(0, u64::from);
+        // Another body starts at the tick after the present one has faded out, and fades in.
+        moving + self.next.map_or(0, |_| CONTROL_FRAMES as u64 + u64::from(self.wet.frames()))
     }
 
     /// Upper bound of the frames until it rests, if `frames` frames of at most the magnitude `peak` come before the silence.

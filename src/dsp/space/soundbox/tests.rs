@@ -164,6 +164,39 @@ fn it_sleeps_when_its_tail_is_over() {
     }
 }
 
+/// While one body fades out, bounds of level and tail already hold for the body that waits.
+#[test]
+fn a_body_that_waits_is_foreseen() {
+    let mut soundbox = wet(BoxBody::violin(), 48_000.0);
+    response(&mut soundbox, 50);
+    soundbox.set_body(BoxBody::voice());
+    let (mut most, mut frames) = (vec![], 0);
+    while frames < 1600 {
+        most.push(soundbox.peak_after(1.0));
+        let mut sides = [[0.0_f32; 40], [0.0; 40]];
+        // The body that waits is driven at its strongest resonance.
+        sides.as_flattened_mut().iter_mut().zip(0..).for_each(|(sample, n)| {
+            *sample = sin(TAU * 650.0 / 48_000.0 * (frames + n % 40) as f64) as f32;
+        });
+        let [left, right] = &mut sides;
+        soundbox.process(left, right);
+        let loudest = sides.as_flattened().iter().fold(0.0_f32, |most, sample| most.max(sample.abs()));
+        assert!(most.iter().all(|most| f64::from(loudest) <= *most), "{loudest} at frame {frames}: {most:?}");
+        frames += 40;
+    }
+    // The same fade in silence.
+    let mut soundbox = wet(BoxBody::violin(), 48_000.0);
+    response(&mut soundbox, 50);
+    soundbox.set_body(BoxBody::voice());
+    let (mut told, mut frames) = (vec![], 0);
+    while !soundbox.is_idle() {
+        told.push(frames + soundbox.tail_frames_after(0, 0.0));
+        soundbox.process(&mut [0.0; 40], &mut [0.0; 40]);
+        frames += 40;
+    }
+    assert!(told.iter().all(|told| frames <= told + 40), "{frames}, told {told:?}");
+}
+
 #[test]
 fn blocks_do_not_matter() {
     let play = |block: usize| {
