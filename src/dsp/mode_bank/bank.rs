@@ -273,7 +273,9 @@ impl ModeBank {
 
     /// Sets factors of the output gains, 0–1, one for each mode. The gains move with the next ramp or jump, which must follow.
     pub(crate) fn set_colour(&mut self, colour: [f32; MAX_MODES]) {
-        (self.colour, self.is_coloured, self.recoloured) = (Row(colour), true, true);
+        let was_coloured = std::mem::replace(&mut self.is_coloured, colour[..self.len] != [1.0; MAX_MODES][..self.len]);
+        self.recoloured |= was_coloured || self.is_coloured;
+        self.colour = Row(colour);
     }
 
     /// Whether other frequencies wait for the next ramp.
@@ -338,7 +340,8 @@ impl ModeBank {
     fn aim(&mut self, frames: Option<usize>, [passed, left]: [usize; 2], lost: Option<ChordLoss>) {
         let fades = self.tuning.fades(self.ratio);
         let faded = std::mem::replace(&mut self.faded, fades);
-        let moved = matches!(self.motion, Motion::Line { gains: true, .. }) || std::mem::take(&mut self.recoloured);
+        let recoloured = std::mem::take(&mut self.recoloured);
+        let moved = recoloured || matches!(self.motion, Motion::Line { gains: true, .. });
         let coloured = |side: &Row| Row(std::array::from_fn(|m| side.0[m] * self.colour.0[m]));
         let full = if self.is_coloured { &self.gains.each_ref().map(coloured) } else { &self.gains };
         let gains = self.instructions.run(Aim {

@@ -4,7 +4,6 @@ mod bloom;
 mod blowing;
 mod bowing;
 mod clock;
-mod colour;
 mod decay;
 mod energy;
 mod hammering;
@@ -36,7 +35,6 @@ use crate::patch::ModeTable;
 use bloom::Bloom;
 use blowing::Blown;
 use clock::Clock;
-use colour::Colour;
 use decay::Decay;
 use energy::Energy;
 use pitch::{Bends, Pitch};
@@ -62,7 +60,6 @@ pub(crate) struct SynthVoice {
     energy: Energy,
     pitch: Pitch,
     decay: Decay,
-    colour: Colour,
     tension: Tension,
     bloom: Bloom,
     fader: Fader,
@@ -107,7 +104,6 @@ impl SynthVoice {
             energy: Energy::NONE,
             pitch: Pitch::new(),
             decay: Decay::new(),
-            colour: Colour::FULL,
             tension: Tension::NONE,
             bloom: Bloom::NONE,
             fader: Fader::closed(),
@@ -167,7 +163,7 @@ impl SynthVoice {
         if self.decay.control(&self.controls, modes, &mut self.bank) {
             self.energy.forget_end();
         }
-        self.colour.control(&self.controls, modes, &mut self.bank);
+        self.bank.set_colour(self.controls.colour);
         self.energy.measure_always(self.may_move || self.controls.tension > 0.0 || self.blooms());
         let energy = || self.energy.now() / self.strike.full_energy();
         let tension = self.tension.control(&self.controls, energy, self.fresh, self.sample_rate, frames);
@@ -178,7 +174,7 @@ impl SynthVoice {
             if !self.modulators.are_idle() {
                 start = Some([self.controls.gain_left, self.controls.gain_right]);
                 self.move_controls(base, wheels, frames);
-                self.colour.control(&self.controls, modes, &mut self.bank);
+                self.bank.set_colour(self.controls.colour);
             }
         }
         match instrument {

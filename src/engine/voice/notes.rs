@@ -3,7 +3,6 @@
 use super::SynthVoice;
 use super::bloom::Bloom;
 use super::clock::Clock;
-use super::colour::Colour;
 use super::energy::Energy;
 use super::pitch::Pitch;
 use super::tension::Tension;
@@ -101,7 +100,7 @@ impl Voice for SynthVoice {
         self.unison = unison;
         self.clock = Clock::new(self.sample_rate);
         (self.energy, self.tension, self.bloom) = (Energy::NONE, Tension::NONE, Bloom::NONE);
-        (self.fader, self.colour) = (Fader::closed(), Colour::FULL);
+        self.fader = Fader::closed();
         (self.controls, self.serial) = (instrument.controls, None);
         (self.key, self.brightness) = (note.key, note.brightness.into());
         self.expressions = Expressions::new(self.sample_rate);
