@@ -17,6 +17,7 @@ use super::reach::{Reach, add};
 use libm::{fabs, hypot, pow, sin, sqrt};
 use sprung::engine::{Event, EventKind, Expression};
 use sprung::params::{PARAM_COUNT, Param};
+use sprung::patch::routes::amount_param;
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::units::gain_from_db;
 use std::f64::consts::{LOG2_10, PI, SQRT_2};
@@ -82,6 +83,8 @@ struct Part {
     bloom: Option<f64>,
     /// The reach of a strike; `None` after the patch has changed.
     reach: Option<Reach>,
+    /// How far routes raise parameters at most, in travel of their knobs.
+    raises: Vec<(Param, f64)>,
 }
 
 /// A strike, and the end of its force.
@@ -129,7 +132,9 @@ impl Part {
             nudge: 1.0,
             bloom: None,
             reach: None,
+            raises: vec![],
         };
+        part.raises = part.most_raised(case);
         // A voice that is struck again keeps the number of unison voices of its note’s start, so the highest number counts.
         part.unison = part.most(case, Param::Unison).max(1.0);
         part.bow = part.most_bow(case);
@@ -149,7 +154,7 @@ impl Part {
         part
     }
 
-    /// The highest value of a parameter in the case: set by a patch or an event, or modulated to its maximum.
+    /// The highest value of a parameter in the case: set by a patch or an event, or modulated to its maximum, and raised by routes.
     fn most(&self, case: &Case, asked: Param) -> f64 {
         let programs = case.programs.iter().filter(|_| self.ensemble);
         let set = programs.chain([&self.patch]).map(|patch| patch.get(asked));
@@ -158,7 +163,35 @@ impl Part {
             EventKind::Modulate { param, .. } if param == asked => Some(asked.info().max),
             _ => None,
         });
-        set.chain(moved).fold(f32::NEG_INFINITY, f32::max).into()
+        self.raised(asked, set.chain(moved).fold(f32::NEG_INFINITY, f32::max)).into()
+    }
+
+    /// How far routes raise parameters at most, in travel of their knobs.
+    fn most_raised(&self, case: &Case) -> Vec<(Param, f64)> {
+        let patches = || case.programs.iter().filter(|_| self.ensemble).chain([&self.patch]);
+        let raised = patches().flat_map(|patch| {
+            patch.routes.iter().map(move |(place, route)| {
+                let amount = amount_param(place);
+                let is_routed =
+                    patches().any(|patch| patch.routes.iter().any(|(_, route)| route.destination == amount));
+                let is_moved = |event: &Event| match event.kind {
+                    EventKind::Param { param, .. } | EventKind::Modulate { param, .. } => param == amount,
+                    _ => false,
+                };
+                let moves = is_routed || self.events(case).any(is_moved);
+                (route.destination, if moves { 1.0 } else { 0.01 * fabs(patch.get(amount).into()) })
+            })
+        });
+        raised.collect()
+    }
+
+    /// A value of a parameter after routes have raised it as far as they may.
+    fn raised(&self, param: Param, value: f32) -> f32 {
+        let by = |(to, by): &(Param, f64)| if *to == param { *by } else { 0.0 };
+        match self.raises.iter().map(by).sum::<f64>() {
+            0.0 => value,
+            by => param.info().denormalise((param.info().normalise(value) + by).min(1.0)),
+        }
     }
 
     /// A frame of a bow adds at most twice friction times speed to the squared amplitudes, and friction is at most the speed;
@@ -183,7 +216,8 @@ impl Part {
             EventKind::Param { param, .. } | EventKind::Modulate { param, .. } => param == Param::Bloom,
             _ => false,
         };
-        let blooms = patches().any(|patch| patch.get(Param::Bloom) > 0.0) || self.events(case).any(is_moved);
+        let blooms = patches().any(|patch| self.raised(Param::Bloom, patch.get(Param::Bloom)) > 0.0)
+            || self.events(case).any(is_moved);
         let modes = patches().map(|patch| patch.modes.as_slice().len()).max()?;
         blooms.then_some(sqrt(modes as f64))
     }
@@ -262,7 +296,7 @@ impl Part {
 
     /// The gain of an exciter's level: the lowest is off.
     fn level(&self, param: Param) -> f64 {
-        let db = self.value(param);
+        let db = f64::from(self.raised(param, self.value(param) as f32));
         if db > -60.0 { gain_from_db(db) } else { 0.0 }
     }
 
@@ -314,7 +348,7 @@ impl Part {
     /// The reach with one table of modes.
     fn reach_of(&self, table: &ModeTable) -> Reach {
         let modes = table.as_slice();
-        let varied = gain_from_db(self.value(Param::VaryModes));
+        let varied = gain_from_db(self.raised(Param::VaryModes, self.value(Param::VaryModes) as f32).into());
         let tilt = self.value(Param::Tilt) / (20.0 / LOG2_10);
         let tilted = |mode: &Mode| fabs(f64::from(mode.level)) * pow(f64::from(mode.ratio), tilt);
         let plain: f64 = modes.iter().map(|mode| fabs(f64::from(mode.level))).sum();
