@@ -157,3 +157,34 @@ fn keys_with_a_tuning_of_their_own_stay_and_pads_follow_the_key_whose_pitch_they
         assert_eq!(sounding(&kit, key, &[tune(tuned, 67.25)]), pitch, "key {key}, tuned {tuned}");
     }
 }
+
+/// The sustain pedal lets dampers down by degrees. A switch holds a note wholly or not at all, and a pedal that comes back does not
+/// wake what was released.
+#[test]
+fn half_a_pedal_damps_by_degrees() {
+    let patch = patch().with(Param::Release, 0.1);
+    // The level in dB half a second after the key went up.
+    let level = |pedals: &[(u32, u8)]| {
+        let mut events = vec![on(0, 60), off(RATE as u32 / 10, 60)];
+        events.extend(pedals.iter().map(|(frame, value)| control(*frame, 64, *value)));
+        events.sort_by_key(|event| event.frame);
+        let mut synth = after(&patch, &events, RATE * 6 / 10);
+        let (mut left, mut right) = ([0.0; 480], [0.0; 480]);
+        synth.process(&[], &mut left, &mut right);
+        20.0 * libm::log10f(left.iter().fold(1e-9_f32, |most, sample| most.max(sample.abs())))
+    };
+    let [up, quarter, half, most, down] = [0, 31, 64, 80, 127].map(|value| level(&[(0, value)]));
+    assert!((down - level(&[(0, 127), (9000, 96)])).abs() < 0.01, "a light pedal holds");
+    assert!(up < -100.0 && (up - quarter).abs() < 0.01, "{up}, {quarter}");
+    // At 64 the T60 is the geometric mean of 20 s and 0.1 s, nearly.
+    let expected = down - 60.0 * 0.5 / (20.0 * libm::powf(0.005, 1.5 - 2.0 * 64.0 / 127.0)) + 60.0 * 0.5 / 20.0;
+    assert!((half - expected).abs() < 0.5, "{half}, expected {expected}");
+    assert!(half + 5.0 < most && most + 0.5 < down, "{half}, {most}, {down}");
+    // It moves while it holds, up again too.
+    let fluttered = level(&[(0, 127), (7000, 70), (9000, 127)]);
+    assert!(half < fluttered && fluttered < down, "{fluttered}");
+    // Once it has let go, it does not come back.
+    let caught = level(&[(0, 127), (6000, 40), (6100, 127)]);
+    assert!(caught < half, "{caught}");
+    assert!(level(&[(0, 127), (6000, 0), (6100, 127)]) < -90.0);
+}

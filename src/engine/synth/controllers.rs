@@ -8,7 +8,7 @@ impl Synth {
     /// Handles a controller at a value 0–1.
     pub(super) fn control(&mut self, channel: u8, number: u8, value: f32) {
         for reached in self.channels.reach(channel) {
-            self.control_voices(reached, number, value >= 0.5);
+            self.control_voices(reached, number, value);
         }
         let members = self.channels.control(channel, number, value);
         // A ramp would let the attack of a note at the same frame through at the gain from before.
@@ -33,10 +33,10 @@ impl Synth {
     }
 
     /// Handles pedals and mode messages, which concern the notes of a channel.
-    fn control_voices(&mut self, channel: u8, number: u8, down: bool) {
+    fn control_voices(&mut self, channel: u8, number: u8, value: f32) {
         match number {
-            controller::SUSTAIN => self.manager.sustain(channel, down),
-            controller::SOSTENUTO => self.manager.sostenuto(channel, down),
+            controller::SUSTAIN => self.manager.sustain(channel, value),
+            controller::SOSTENUTO => self.manager.sostenuto(channel, value >= 0.5),
             controller::ALL_SOUND_OFF => self.manager.all_sound_off(channel),
             // The mode messages 124–127 imply all notes off.
             controller::ALL_NOTES_OFF..=127 => self.manager.all_notes_off(channel),
@@ -50,7 +50,7 @@ impl Synth {
     }
 
     fn lift_pedals(&mut self, channel: u8) {
-        self.manager.sustain(channel, false);
+        self.manager.sustain(channel, 0.0);
         self.manager.sostenuto(channel, false);
     }
 

@@ -22,13 +22,15 @@ pub(super) struct Decay {
     /// Whether the patch lets notes ring on after their release, undamped.
     rings_on: bool,
     released: bool,
+    /// How far the damper has come down since the key went up, 0–1.
+    fallen: f64,
 }
 
 impl Decay {
     /// The decay of a voice before its first note.
     pub(super) fn new() -> Self {
         let damping = Damping { decay: 1.0, release: 1.0, amount: 0.0, touch: 0.0 };
-        Self { tilt: 0.0, damping, place: None, rings_on: false, released: false }
+        Self { tilt: 0.0, damping, place: None, rings_on: false, released: false, fallen: 0.0 }
     }
 
     /// Reads decay, tilt and touch from the patch, as modulated at the strike.
@@ -72,7 +74,7 @@ impl Decay {
     /// Handles the press of a key: the note is not damped. `decay` is its T60 in seconds, `touch` as in [`Damping`].
     pub(super) fn press(&mut self, decay: f64, touch: f64) {
         self.damping = Damping { decay, release: 0.0, amount: 0.0, touch };
-        self.released = false;
+        (self.released, self.fallen) = (false, 0.0);
     }
 
     /// Reads from the patch whether the note rings on after its release.
@@ -80,9 +82,16 @@ impl Decay {
         self.rings_on = values.instrument.knobs.choice::<NoteOff>(Param::NoteOff) == NoteOff::Ring;
     }
 
-    /// Handles the release of the key.
+    /// Handles the release of the note.
     pub(super) fn release(&mut self) {
-        self.released = !self.rings_on;
+        self.released = true;
+    }
+
+    /// Lets the damper down by a share 0–1. It does not rise again from what was released.
+    pub(super) fn lower(&mut self, share: f64) {
+        if !self.rings_on {
+            self.fallen = if self.released { self.fallen.max(share) } else { share };
+        }
     }
 
     /// Sets the T60s of the bank if they have changed. `modes` returns the patch's modes, or none if the patch was replaced; it
@@ -95,7 +104,7 @@ impl Decay {
     ) -> bool {
         let tilted = if controls.decay_tilt == self.tilt { None } else { modes() };
         tilted.into_iter().for_each(|modes| self.set_tilt(controls.decay_tilt, modes, bank));
-        let amount = if self.released { 1.0 } else { controls.damper };
+        let amount = self.fallen.max(controls.damper);
         let release = if amount == 0.0 { 0.0 } else { controls.release };
         let (mut touch, mut moved) = (0.0, None);
         if controls.touch > 0.0 {

@@ -171,6 +171,10 @@ impl Voice for SynthVoice {
         self.slide(instrument, note, true);
     }
 
+    fn damp(&mut self, share: f32) {
+        self.decay.lower(share.into());
+    }
+
     fn release(&mut self, velocity: f32) {
         (self.let_go, self.is_held) = (Some(velocity), false);
         self.decay.release();

@@ -15,13 +15,13 @@ impl<V: Voice> VoiceManager<V> {
         }
         for slot in self.slots.in_use_mut().iter_mut().filter(|slot| slot.is_one_of(&notes)) {
             slot.key_down = false;
-            slot.release_unless_held(self.pedals.sustains(slot.note.channel), velocity);
+            slot.release_unless_held(self.pedals.sustain_of(slot.note.channel), velocity);
         }
     }
 
-    /// The sustain pedal (controller 64).
-    pub(crate) fn sustain(&mut self, channel: u8, down: bool) {
-        self.pedals.sustain(channel, down, self.slots.in_use_mut());
+    /// The sustain pedal (controller 64), at a position 0–1.
+    pub(crate) fn sustain(&mut self, channel: u8, position: f32) {
+        self.pedals.sustain(channel, position, self.slots.in_use_mut());
     }
 
     /// The sostenuto pedal (controller 66): holds the notes whose keys are down when it goes down.

@@ -8,22 +8,23 @@ const MIDDLE_VELOCITY: f32 = 0.5;
 
 /// Which pedals are down. Real-time safe.
 pub(super) struct Pedals {
-    sustain: [bool; 16],
+    /// Positions, 0–1.
+    sustain: [f32; 16],
     sostenuto: [bool; 16],
 }
 
 impl Pedals {
     /// No pedal is down.
-    pub(super) const UP: Self = Self { sustain: [false; 16], sostenuto: [false; 16] };
+    pub(super) const UP: Self = Self { sustain: [0.0; 16], sostenuto: [false; 16] };
 
-    /// Whether the sustain pedal holds the notes of a channel.
-    pub(super) fn sustains(&self, channel: u8) -> bool {
+    /// The position of the sustain pedal of a channel, 0–1.
+    pub(super) fn sustain_of(&self, channel: u8) -> f32 {
         self.sustain[usize::from(channel)]
     }
 
-    /// Sets the sustain pedal. When it goes up, notes whose keys are up are released.
-    pub(super) fn sustain<V: Voice>(&mut self, channel: u8, down: bool, slots: &mut [Slot<V>]) {
-        self.sustain[usize::from(channel)] = down;
+    /// Sets the position of the sustain pedal, 0–1. When it goes up, notes whose keys are up are released.
+    pub(super) fn sustain<V: Voice>(&mut self, channel: u8, position: f32, slots: &mut [Slot<V>]) {
+        self.sustain[usize::from(channel)] = position;
         self.release_unheld(channel, slots);
     }
 
@@ -42,7 +43,7 @@ impl Pedals {
     /// Releases the notes of a channel whose keys are up and that no pedal holds.
     pub(super) fn release_unheld<V: Voice>(&self, channel: u8, slots: &mut [Slot<V>]) {
         for slot in slots.iter_mut().filter(|slot| slot.note.channel == channel && !slot.key_down) {
-            slot.release_unless_held(self.sustains(channel), MIDDLE_VELOCITY);
+            slot.release_unless_held(self.sustain_of(channel), MIDDLE_VELOCITY);
         }
     }
 }

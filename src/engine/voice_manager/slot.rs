@@ -5,6 +5,9 @@ use super::pool::VoicePool;
 use super::voice::{Unison, Voice};
 use crate::engine::note::{Note, Notes};
 
+/// The sustain pedal holds notes from this position on.
+const HELD_FROM: f32 = 0.5;
+
 /// Most voices that play one note.
 pub(crate) const MAX_UNISON: usize = 8;
 
@@ -127,12 +130,16 @@ impl<V: Voice> Slot<V> {
         self.key_down = false;
     }
 
-    /// Releases the note unless its key is down or a pedal holds it.
-    pub(super) fn release_unless_held(&mut self, is_sustained: bool, velocity: f32) {
-        if self.state == State::Held && !self.key_down && !self.sostenuto && !is_sustained {
+    /// Releases the note unless its key is down or a pedal holds it. `sustain` is the position of the sustain pedal, 0–1.
+    pub(super) fn release_unless_held(&mut self, sustain: f32, velocity: f32) {
+        if self.key_down || self.sostenuto {
+            return;
+        }
+        if self.state == State::Held && sustain < HELD_FROM {
             self.voices.iter_mut().for_each(|voice| voice.release(velocity));
             self.state = State::Released;
         }
+        self.voices.iter_mut().for_each(|voice| voice.damp(dampers_at(sustain)));
     }
 
     /// How loud the note is: the sum over its voices, in the unit of [`Voice::energy`].
@@ -150,4 +157,10 @@ impl<V: Voice> Slot<V> {
         self.voices.drain(..).for_each(|voice| pool.give_back(voice));
         (self.cells, self.state, self.key_down) = (0, State::Free, false);
     }
+}
+
+/// How far dampers lie on at a position of the sustain pedal, 0–1. Over the middle half of its way it lets them down by degrees; a
+/// switch does so at once.
+fn dampers_at(sustain: f32) -> f32 {
+    (1.5 - 2.0 * sustain).clamp(0.0, 1.0)
 }

@@ -23,6 +23,8 @@ pub trait Voice {
     /// another patch than the one that the voice was started with: the voice then uses its stored values of its own
     /// patch.
     fn retune(&mut self, context: Option<&Self::Context>, note: &Note);
+    /// Lets dampers down by a share 0–1, while no key holds the note. Once it is released, they do not rise again.
+    fn damp(&mut self, share: f32);
     /// Releases the note, with a release velocity 0–1.
     fn release(&mut self, velocity: f32);
     /// Silences the voice within a few milliseconds, without a click.

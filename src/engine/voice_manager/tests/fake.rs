@@ -60,6 +60,8 @@ impl Voice for FakeVoice {
         self.log.borrow_mut().push(format!("retune {} to {}{by}", self.key, note.key));
         self.key = note.key;
     }
+    fn damp(&mut self, _share: f32) {}
+
     fn release(&mut self, velocity: f32) {
         self.log.borrow_mut().push(format!("release {} at {velocity}", self.key));
     }

@@ -80,7 +80,7 @@ fn play_with(
             OnPatch(key, _) => _ = manager.note_on(&instrument, on(key, 1.0, 0, patch)),
             Off(key) => manager.note_off(&instrument, Notes::on(0, key), 0.25),
             OffId(key, id) => manager.note_off(&instrument, Notes { id: NoteId::new(id), ..Notes::on(0, key) }, 0.25),
-            Sustain(down) => manager.sustain(0, down),
+            Sustain(down) => manager.sustain(0, f32::from(down)),
             Sostenuto(down) => manager.sostenuto(0, down),
             NotesOff => manager.all_notes_off(0),
             SoundOff => manager.all_sound_off(0),
