@@ -126,6 +126,13 @@ impl Bank {
         either!(self, bank => bank.retune(modes));
     }
 
+    /// See [`ModeBank::transpose`]. Does nothing with the original formulas, whose pitch drifts by itself.
+    pub(crate) fn transpose(&mut self, frequencies: impl Iterator<Item = f64>) {
+        if let Self::Exact(bank) = self {
+            bank.transpose(frequencies);
+        }
+    }
+
     /// See [`ModeBank::sweep_to`].
     pub(crate) fn sweep_to(&mut self, ratio: f64, frames: usize) {
         either!(self, bank => bank.sweep_to(ratio, frames));

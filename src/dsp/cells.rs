@@ -9,8 +9,6 @@ use super::bank::{Bank, Recurrence};
 use super::exciter::{Drive, Player};
 use super::mode_bank::tail::Energies;
 use super::mode_bank::{ExcitationRows, MAX_MODES, ModeRows};
-use super::series::powers;
-use std::f64::consts::LOG2_10;
 
 /// Maximum number of cells of one voice.
 pub(crate) const MAX_CELLS: usize = 8;
@@ -22,8 +20,6 @@ pub struct Cell {
     /// Frequency of each mode as a multiple of the note's frequency, and its T60 as a multiple of the note's decay.
     ratios: [f64; MAX_MODES],
     t60_scales: [f64; MAX_MODES],
-    /// Logarithm of each ratio to base 2, for the colour.
-    octaves: [f64; MAX_MODES],
     /// Square of each mode's shape at the point of touch, 0–1.
     touched: [f32; MAX_MODES],
     /// The band of each mode, for [`Cells::climb`].
@@ -36,7 +32,6 @@ impl Cell {
         Self {
             bank: Bank::new(sample_rate),
             ratios: [1.0; MAX_MODES],
-            octaves: [0.0; MAX_MODES],
             t60_scales: [1.0; MAX_MODES],
             touched: [0.0; MAX_MODES],
             bands: [0; MAX_MODES],
@@ -51,16 +46,13 @@ pub struct Cells {
     cells: [Option<Box<Cell>>; MAX_CELLS],
     /// Number of modes of all cells together.
     len: usize,
-    /// By how many decibels per octave higher modes are softer than they sound, at most 0.
-    colour: f64,
     /// The summed output of several cells.
     sum: [[f32; CONTROL_FRAMES]; 2],
 }
 
 impl Cells {
     /// No cells.
-    pub(crate) const EMPTY: Self =
-        Self { cells: [const { None }; MAX_CELLS], len: 0, colour: 0.0, sum: [[0.0; CONTROL_FRAMES]; 2] };
+    pub(crate) const EMPTY: Self = Self { cells: [const { None }; MAX_CELLS], len: 0, sum: [[0.0; CONTROL_FRAMES]; 2] };
 
     /// Number of cells that this number of modes needs.
     pub(crate) fn count_for(modes: usize) -> usize {
@@ -104,10 +96,10 @@ impl Cells {
         self.iter_mut().zip(other.iter()).for_each(|(cell, other)| cell.bank.take_state_of(&other.bank));
     }
 
-    /// Frequency of each mode as a multiple of the note's frequency, and the logarithm of that to base 2: a row of each for each
-    /// cell. Write these before [`Cells::load`] or [`Cells::retune`].
-    pub(crate) fn ratios_mut(&mut self) -> impl Iterator<Item = [&mut [f64; MAX_MODES]; 2]> {
-        self.iter_mut().map(|cell| [&mut cell.ratios, &mut cell.octaves])
+    /// Frequency of each mode as a multiple of the note's frequency, a row for each cell. Write these before
+    /// [`Cells::load`].
+    pub(crate) fn ratios_mut(&mut self) -> impl Iterator<Item = &mut [f64; MAX_MODES]> {
+        self.iter_mut().map(|cell| &mut cell.ratios)
     }
 
     /// T60 of each mode as a multiple of the note's decay, a row for each cell. Write these before [`Cells::load`].
@@ -135,7 +127,6 @@ impl Cells {
             bank.load(&setup(modes, [ratios, t60_scales, &touched.map(f64::from)]));
         }
         self.len = self.iter().map(|cell| cell.bank.len()).sum();
-        self.colour = 0.0;
     }
 
     /// Like [`super::ModeBank::retune`]: `tuning` computes a mode's frequency in Hz and its T60 in seconds from its
@@ -145,7 +136,14 @@ impl Cells {
             let rows = ratios.iter().zip(t60_scales).zip(touched);
             bank.retune(rows.map(|((ratio, scale), touched)| tuning(*ratio, *scale, f64::from(*touched))));
         }
-        self.apply_colour();
+    }
+
+    /// Like [`super::ModeBank::transpose`]: a mode's frequency is its ratio times its number in the row that `bases` tells for its
+    /// cell, in Hz.
+    pub(crate) fn transpose(&mut self, bases: impl Fn(usize) -> [f64; MAX_MODES]) {
+        for (place, Cell { bank, ratios, .. }) in self.iter_mut().enumerate() {
+            bank.transpose(ratios.iter().zip(bases(place)).map(|(ratio, base)| ratio * base));
+        }
     }
 
     /// Like [`super::ModeBank::set_t60`], for all modes: `t60` computes the T60 in seconds from a mode's T60 scale and its
@@ -168,24 +166,10 @@ impl Cells {
         }
     }
 
-    /// Sets by how many decibels per octave above the note's frequency modes are heard softer than they sound, at most 0. It moves
-    /// with the next ramp or jump, which must follow. It only makes modes softer, so that no bound of a strike changes.
-    pub(crate) fn set_colour(&mut self, slope: f64) {
-        if slope != self.colour {
-            self.colour = slope;
-            self.apply_colour();
-        }
-    }
-
-    fn apply_colour(&mut self) {
-        let exponent = self.colour * (LOG2_10 / 20.0);
-        for Cell { bank, octaves, .. } in self.iter_mut() {
-            let mut gains = [1.0; MAX_MODES];
-            if exponent != 0.0 {
-                powers(&octaves[..bank.len()], exponent, &mut gains);
-            }
-            // Modes below the note's frequency are not raised.
-            bank.set_colour(gains.map(|gain| gain.min(1.0) as f32));
+    /// Like [`super::ModeBank::set_colour`], for the modes of a cell. Does nothing if there is no such cell.
+    pub(crate) fn set_colour(&mut self, cell: usize, colour: [f32; MAX_MODES]) {
+        if let Some(Some(cell)) = self.cells.get_mut(cell) {
+            cell.bank.set_colour(colour);
         }
     }
 

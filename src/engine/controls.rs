@@ -31,6 +31,10 @@ pub(crate) struct Controls {
     pub(crate) decay_tilt: f64,
     /// How much softer higher modes are heard, in decibels per octave.
     pub(crate) colour: f64,
+    /// How far modes wander by themselves: decibels, cents, and how often a second.
+    pub(crate) drift_level: f64,
+    pub(crate) drift_pitch: f64,
+    pub(crate) drift_rate: f64,
     /// Semitones by which a full strike raises the pitch.
     pub(crate) tension: f64,
     /// Share of its energy that a band passes on to higher modes, 0–1, and the time of this rise in seconds.
@@ -82,6 +86,9 @@ impl Controls {
             damper: f64::from(value(Param::Damper)) * 0.01,
             decay_tilt: value(Param::DecayTilt).into(),
             colour: value(Param::Colour).into(),
+            drift_level: value(Param::DriftLevel).into(),
+            drift_pitch: value(Param::DriftPitch).into(),
+            drift_rate: value(Param::DriftRate).into(),
             tension: value(Param::Tension).into(),
             bloom: f64::from(value(Param::Bloom)) * 0.01,
             bloom_time: value(Param::BloomTime).into(),
@@ -119,6 +126,9 @@ impl Controls {
             Param::Damper => self.damper = wide * 0.01,
             Param::DecayTilt => self.decay_tilt = wide,
             Param::Colour => self.colour = wide,
+            Param::DriftLevel => self.drift_level = wide,
+            Param::DriftPitch => self.drift_pitch = wide,
+            Param::DriftRate => self.drift_rate = wide,
             Param::Tension => self.tension = wide,
             Param::Bloom => self.bloom = wide * 0.01,
             Param::BloomTime => self.bloom_time = wide,

@@ -167,6 +167,12 @@ table! {
             "How much of its energy a loud sound passes on from each half octave to the next, as gongs and cymbals do.";
         BloomTime "bloom_time" "Bloom time", Seconds 0.05..10.0 = 0.5, Logarithmic, Smoothed(20),
             "Time in which the energy of a full strike climbs to the high modes.";
+        DriftLevel "drift_level" "Drift level", Decibels 0.0..24.0 = 0.0, Linear, Smoothed(20),
+            "How much softer each mode becomes at most as it wanders by itself, by chance and unlike the others.";
+        DriftPitch "drift_pitch" "Drift pitch", Cents 0.0..100.0 = 0.0, Linear, Smoothed(20),
+            "How far the pitch of each mode wanders at most, up or down, unless something plays or touches it.";
+        DriftRate "drift_rate" "Drift rate", Hertz 0.05..20.0 = 3.0, Logarithmic, Smoothed(20),
+            "How often a second each mode turns to another level and pitch.";
         Touch "touch" "Touch", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20),
             "How firmly a finger touches the sounding body: it damps each mode by how far that moves there.";
         TouchPosition "touch_position" "Touch position", Percent 0.0..100.0 = 50.0, Linear, Smoothed(20),

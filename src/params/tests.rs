@@ -16,7 +16,7 @@ fn ids_are_pinned() {
         input_level \
         velocity vary_position vary_hardness vary_modes \
         decay release damper note_off decay_tilt tilt colour stretch width coefficients \
-        tension bloom bloom_time touch touch_position \
+        tension bloom bloom_time drift_level drift_pitch drift_rate touch touch_position \
         tune fine tuning key_track sweep sweep_time sweep_curve \
         vibrato vibrato_rate vibrato_delay vibrato_sync glide glide_when glide_by \
         bend_range \

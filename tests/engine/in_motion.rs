@@ -285,3 +285,45 @@ fn colour_softens_modes_by_their_octaves() {
     };
     assert!(step(24_000..26_000) <= 1.01 * step(20_000..24_000) && step(48_000..50_000) <= 1.05 * step(50_000..54_000));
 }
+
+/// Modes wander by themselves within the bounds that are set, each for itself, by the seed, and without a click.
+#[test]
+fn modes_drift_within_their_bounds() {
+    let of = |ratios: &[f32], level: f32, cents: f32| {
+        let modes: Vec<Mode> = ratios.iter().map(|ratio| Mode { ratio: *ratio, ..Mode::UNIT }).collect();
+        let patch = Patch { modes: ModeTable::new(&modes), ..mass(60.0) }.with(Param::DriftRate, 6.0);
+        patch.with(Param::DriftLevel, level).with(Param::DriftPitch, cents)
+    };
+    let note = [Event::note_on(0, 57, 1.0)];
+    let still = render(&of(&[1.0], 0.0, 0.0), &note, 4.0);
+    let peaks = |sound: &[f32]| -> Vec<f32> {
+        sound.chunks(2400).map(|part| part.iter().fold(0.0_f32, |most, sample| most.max(sample.abs()))).collect()
+    };
+    let fallen = render(&of(&[1.0], 12.0, 0.0), &note, 4.0);
+    let gains: Vec<f32> = peaks(&fallen).iter().zip(peaks(&still)).map(|(drifted, still)| drifted / still).collect();
+    assert!(gains.iter().all(|gain| (0.24..1.001).contains(gain)), "{gains:?}");
+    let extreme = |gains: &[f32]| gains.iter().fold((1.0_f32, 0.0_f32), |(a, b), gain| (a.min(*gain), b.max(*gain)));
+    assert!(extreme(&gains).0 < 0.5 && extreme(&gains).1 > 0.7, "{gains:?}");
+    // Frames of zero crossings upwards: those of 100 rounds last as long as the pitch is low.
+    let bent = render(&of(&[1.0], 0.0, 40.0), &note, 4.0);
+    let rounds = |sound: &[f32]| -> Vec<f64> {
+        let up = sound.windows(2).enumerate().filter(|(_, pair)| pair[0] < 0.0 && pair[1] >= 0.0);
+        let at: Vec<f64> = up.map(|(n, pair)| n as f64 + f64::from(pair[0] / (pair[0] - pair[1]))).collect();
+        at.windows(11).map(|window| window[10] - window[0]).collect()
+    };
+    let cents: Vec<f64> = rounds(&bent).iter().map(|round| 1200.0 * libm::log2(rounds(&still)[0] / round)).collect();
+    let (least, most) = cents.iter().fold((0.0_f64, 0.0_f64), |(a, b), cents| (a.min(*cents), b.max(*cents)));
+    assert!((-40.5..-20.0).contains(&least) && (20.0..40.5).contains(&most), "{least} to {most} cents");
+    assert!(peaks(&bent).iter().zip(peaks(&still)).all(|(bent, still)| (bent / still - 1.0).abs() < 0.01));
+    let step = |sound: &[f32]| sound.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
+    assert!(step(&fallen).max(step(&bent)) <= 1.03 * step(&still));
+    // Each mode by itself: the sum of two is not one of them twice, and every seed has its own.
+    let both = render(&of(&[1.0, 1.0], 12.0, 0.0), &note, 4.0);
+    let twice = both.iter().zip(&fallen).map(|(both, one)| (both - 2.0 * one).abs()).fold(0.0, f32::max);
+    assert!(twice > 0.2 * step(&still), "{twice}");
+    assert!(render(&of(&[1.0], 12.0, 40.0), &note, 1.0) == render(&of(&[1.0], 12.0, 40.0), &note, 1.0));
+    // It can be switched off while it sounds, and leaves no trace.
+    let off = [note[0], set(24_000, Param::DriftLevel, 0.0)];
+    let ended = peaks(&render(&of(&[1.0], 12.0, 0.0), &off, 1.0));
+    assert!((ended[15] / peaks(&still)[15] - 1.0).abs() < 1e-4, "{ended:?}");
+}

@@ -23,7 +23,7 @@ fn half_octaves_are_counted() {
 fn struck(ratios: &[f64], amplitudes: &[f32], t60: f64, recurrence: Recurrence) -> Cells {
     let mut cells = Cells::EMPTY;
     (0..Cells::count_for(ratios.len())).for_each(|_| assert!(cells.add(Box::new(Cell::new(RATE))).is_none()));
-    cells.ratios_mut().flat_map(|[ratios, _]| ratios).zip(ratios).for_each(|(to, ratio)| *to = *ratio);
+    cells.ratios_mut().flatten().zip(ratios).for_each(|(to, ratio)| *to = *ratio);
     let setup = |modes: &[f64], _: [&[f64; MAX_MODES]; 3]| {
         let setup = |ratio: &f64| ModeSetup { frequency: 60.0 * ratio, t60, left: 1.0, right: 1.0 };
         modes.iter().map(setup).collect()

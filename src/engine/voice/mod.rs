@@ -4,7 +4,9 @@ mod bloom;
 mod blowing;
 mod bowing;
 mod clock;
+mod colour;
 mod decay;
+mod drift;
 mod energy;
 mod hammering;
 mod held_noise;
@@ -35,7 +37,9 @@ use crate::patch::ModeTable;
 use bloom::Bloom;
 use blowing::Blown;
 use clock::Clock;
+use colour::Colour;
 use decay::Decay;
+use drift::Drift;
 use energy::Energy;
 use pitch::{Bends, Pitch};
 use separation::Separation;
@@ -60,6 +64,8 @@ pub(crate) struct SynthVoice {
     energy: Energy,
     pitch: Pitch,
     decay: Decay,
+    colour: Colour,
+    drift: Drift,
     tension: Tension,
     bloom: Bloom,
     fader: Fader,
@@ -104,6 +110,8 @@ impl SynthVoice {
             energy: Energy::NONE,
             pitch: Pitch::new(),
             decay: Decay::new(),
+            colour: Colour::full(1.0),
+            drift: Drift::new(0),
             tension: Tension::NONE,
             bloom: Bloom::NONE,
             fader: Fader::closed(),
@@ -163,7 +171,8 @@ impl SynthVoice {
         if self.decay.control(&self.controls, modes, &mut self.bank) {
             self.energy.forget_end();
         }
-        self.bank.set_colour(self.controls.colour);
+        self.drift.control(&self.controls, [passed, self.clock.seconds(frames as u64)]);
+        self.colour.control(self.controls.colour, &self.drift, modes, &mut self.bank);
         self.energy.measure_always(self.may_move || self.controls.tension > 0.0 || self.blooms());
         let energy = || self.energy.now() / self.strike.full_energy();
         let tension = self.tension.control(&self.controls, energy, self.fresh, self.sample_rate, frames);
@@ -174,7 +183,8 @@ impl SynthVoice {
             if !self.modulators.are_idle() {
                 start = Some([self.controls.gain_left, self.controls.gain_right]);
                 self.move_controls(base, wheels, frames);
-                self.bank.set_colour(self.controls.colour);
+                self.drift.control(&self.controls, [0.0, self.clock.seconds(frames as u64)]);
+                self.colour.control(self.controls.colour, &self.drift, modes, &mut self.bank);
             }
         }
         match instrument {
@@ -185,6 +195,9 @@ impl SynthVoice {
         self.control_rattle(instrument);
         self.aim_gain(start, wheels, frames);
         self.control_driven(instrument, frames);
+        if !self.strike.is_touched() && !self.strike.rattling.is_on() {
+            self.drift.detune(self.pitch.frequency(), &mut self.bank);
+        }
         self.fresh = false;
     }
 
@@ -202,7 +215,7 @@ impl SynthVoice {
         let Self { strike, modulators, bank, sample_rate, pitch, table, energy, .. } = self;
         let values = instrument.map(|instrument| StruckValues { instrument, modulators, table: *table });
         let (share, note) = (energy.now() / strike.full_energy(), [pitch.frequency(), *sample_rate]);
-        let is_touched = strike.hammering.is_on() || strike.bowing.is_on() || strike.blowing.is_on();
+        let is_touched = strike.is_touched();
         let full = strike.full_force();
         if strike.rattling.control(values.as_ref(), [share, full], note, pitch.ratio(), is_touched, bank) {
             strike.bowing.lift();

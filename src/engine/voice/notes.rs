@@ -3,6 +3,8 @@
 use super::SynthVoice;
 use super::bloom::Bloom;
 use super::clock::Clock;
+use super::colour::Colour;
+use super::drift::Drift;
 use super::energy::Energy;
 use super::pitch::Pitch;
 use super::tension::Tension;
@@ -64,6 +66,7 @@ impl SynthVoice {
                 *table = values.instrument.sound.patch().modes.place(self.pitch.frequency());
                 values.table = *table;
                 Pitch::set_ratios(values, &mut self.bank);
+                self.colour.change_modes(values.get(Param::Stretch));
                 self.decay.read(values, &controls, &mut self.bank);
                 self.pitch.correct(values.instrument.sound.correction());
                 self.strike.blowing.lift();
@@ -124,6 +127,7 @@ impl Voice for SynthVoice {
         self.table = instrument.sound.patch().modes.place(self.pitch.frequency());
         values.table = self.table;
         Pitch::set_ratios(&values, &mut self.bank);
+        self.colour = Colour::full(values.get(Param::Stretch));
         self.decay.read(&values, &self.controls, &mut self.bank);
 
         let recurrence = match instrument.knobs.choice::<Coefficients>(Param::Coefficients) {
@@ -144,6 +148,7 @@ impl Voice for SynthVoice {
         };
         self.bank.load(recurrence, self.sample_rate, values.modes().as_slice(), setup);
         self.excite(instrument, note);
+        self.drift = Drift::new(self.strike.key());
         self.separation.iter_mut().for_each(|separation| separation.begin(note));
     }
 

@@ -77,8 +77,7 @@ impl Pitch {
     pub(super) fn set_ratios(values: &StruckValues, bank: &mut Cells) {
         let (stretch, table) = (values.get(Param::Stretch), values.modes());
         let rows = table.as_slice().chunks(MAX_MODES).zip(table.octaves().chunks(MAX_MODES));
-        for ([ratios, own_octaves], (modes, octaves)) in bank.ratios_mut().zip(rows) {
-            own_octaves.iter_mut().zip(octaves).for_each(|(own, octaves)| *own = stretch * octaves);
+        for (ratios, (modes, octaves)) in bank.ratios_mut().zip(rows) {
             if stretch == 1.0 {
                 ratios.iter_mut().zip(modes).for_each(|(ratio, mode)| *ratio = mode.ratio.into());
             } else {

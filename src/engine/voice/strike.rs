@@ -121,6 +121,11 @@ impl Strike {
         self.key
     }
 
+    /// Whether a hammer, a bow or breath acts on the modes by how they move.
+    pub(super) fn is_touched(&self) -> bool {
+        self.hammering.is_on() || self.bowing.is_on() || self.blowing.is_on()
+    }
+
     /// Whether a player, held noise or incoming sound acts.
     pub(super) fn is_played(&self) -> bool {
         self.bowing.is_on() || self.blowing.is_on() || self.input.is_on() || self.held_noise.is_on()
