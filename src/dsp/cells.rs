@@ -138,11 +138,11 @@ impl Cells {
         }
     }
 
-    /// Like [`super::ModeBank::transpose`]: a mode's frequency is its ratio times its number in the row that `bases` tells for its
-    /// cell, in Hz.
-    pub(crate) fn transpose(&mut self, bases: impl Fn(usize) -> [f64; MAX_MODES]) {
-        for (place, Cell { bank, ratios, .. }) in self.iter_mut().enumerate() {
-            bank.transpose(ratios.iter().zip(bases(place)).map(|(ratio, base)| ratio * base));
+    /// Like [`super::ModeBank::transpose`], for the modes of a cell: a mode's frequency is its ratio times one of `bases`, in Hz. Does
+    /// nothing if there is no such cell.
+    pub(crate) fn transpose(&mut self, cell: usize, bases: impl Iterator<Item = f64>) {
+        if let Some(Some(cell)) = self.cells.get_mut(cell) {
+            cell.bank.transpose(cell.ratios.iter().zip(bases).map(|(ratio, base)| ratio * base));
         }
     }
 

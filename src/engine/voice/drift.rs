@@ -1,6 +1,5 @@
 //! Modes that wander by themselves, each in level and in pitch.
 
-use crate::dsp::cells::Cells;
 use crate::dsp::mode_bank::MAX_MODES;
 use crate::dsp::random;
 use crate::dsp::series::powers;
@@ -8,10 +7,10 @@ use crate::engine::controls::Controls;
 use libm::floor;
 use std::f64::consts::LOG2_10;
 
-/// Numbers of the streams: where each mode stands in its round, its levels and its pitches. They differ from those of the strike.
-const OFFSETS: u64 = 0x44_5246_5400;
-const LEVELS: u64 = OFFSETS + 1;
-const PITCHES: u64 = OFFSETS + 2;
+/// Number of the stream. It differs from those of the strike.
+const DRIFT_STREAM: u64 = 0x44_5246_5400;
+/// Where modes stand between one random number and the next: as far apart as can be (the golden ratio).
+const STAGGER: f64 = 0.618_033_988_749_894_9;
 
 /// The drift of a voice: for each mode two random curves, smooth from one random number to the next, which come `drift_rate` times
 /// a second. Levels only fall, so that no bound of a strike changes. Real-time safe.
@@ -26,60 +25,56 @@ pub(super) struct Drift {
     /// Largest fall of a level in decibels, and largest change of a pitch in octaves.
     fall: f64,
     octaves: f64,
-    is_detuned: bool,
 }
 
 impl Drift {
     /// The drift of a voice whose first strike has the stream `key`.
-    pub(super) const fn new(key: u64) -> Self {
-        Self { key, phase: 0.0, next_phase: 0.0, fall: 0.0, octaves: 0.0, is_detuned: false }
+    pub(super) fn new(key: u64) -> Self {
+        Self { key: random::key(key, DRIFT_STREAM), phase: 0.0, next_phase: 0.0, fall: 0.0, octaves: 0.0 }
     }
 
-    /// Advances by `passed` seconds, and takes the values for the time `ahead` seconds from now.
-    pub(super) fn control(&mut self, controls: &Controls, [passed, ahead]: [f64; 2]) {
+    /// Advances by `passed` seconds, and takes the values for the time `ahead` seconds from now. Pitches come back to those of the note
+    /// if it `is_played`.
+    pub(super) fn control(&mut self, controls: &Controls, is_played: bool, [passed, ahead]: [f64; 2]) {
         self.phase += controls.drift_rate * passed;
         self.next_phase = self.phase + controls.drift_rate * ahead;
-        (self.fall, self.octaves) = (controls.drift_level, controls.drift_pitch / 1200.0);
+        (self.fall, self.octaves) = (controls.drift_level, if is_played { 0.0 } else { controls.drift_pitch / 1200.0 });
     }
 
-    pub(super) fn moves_levels(&self) -> bool {
-        self.fall > 0.0
+    /// Whether levels drift, and whether pitches do.
+    pub(super) fn moves(&self) -> [bool; 2] {
+        [self.fall > 0.0, self.octaves > 0.0]
     }
 
-    /// Gains of the modes of a cell, 0–1.
-    pub(super) fn levels(&self, cell: usize) -> [f64; MAX_MODES] {
-        let falls = self.numbers(LEVELS, cell).map(|number| 0.5 * (number - 1.0));
-        let mut gains = [1.0; MAX_MODES];
-        powers(&falls, self.fall * (LOG2_10 / 20.0), &mut gains);
-        gains
+    /// Gains of the first `len` modes of a cell at the next control tick, 0–1, and the ratios of their pitches.
+    pub(super) fn at(&self, cell: usize, len: usize) -> [[f64; MAX_MODES]; 2] {
+        let [levels, pitches] = self.curves(cell, len);
+        let falls = levels.map(|level| 0.5 * (level - 1.0));
+        let [mut gains, mut ratios] = [[1.0; MAX_MODES]; 2];
+        powers(&falls[..len], self.fall * (LOG2_10 / 20.0), &mut gains);
+        powers(&pitches[..len], self.octaves, &mut ratios);
+        [gains, ratios]
     }
 
-    /// Moves the pitches of modes whose note has this frequency in Hz. The next ramp reaches them.
-    pub(super) fn detune(&mut self, frequency: f64, bank: &mut Cells) {
-        let drifts = self.octaves > 0.0;
-        if drifts || self.is_detuned {
-            self.is_detuned = drifts;
-            bank.transpose(|cell| {
-                let mut factors = [1.0; MAX_MODES];
-                powers(&self.numbers(PITCHES, cell), self.octaves, &mut factors);
-                factors.map(|factor| frequency * factor)
-            });
-        }
-    }
-
-    /// The numbers of the modes of a cell at the next control tick, −1 to 1.
-    fn numbers(&self, stream: u64, cell: usize) -> [f64; MAX_MODES] {
-        let (offsets, stream) = (random::key(self.key, OFFSETS), random::key(self.key, stream));
+    /// Where the curves of levels and of pitches stand, −1 to 1.
+    fn curves(&self, cell: usize, len: usize) -> [[f64; MAX_MODES]; 2] {
         let whole = floor(self.next_phase);
-        let draws = [0, 1, 2].map(|n| random::key(stream, whole as u64 + n));
-        std::array::from_fn(|m| {
-            let m = (cell * MAX_MODES + m) as u64;
-            // Modes do not turn round together.
-            let place = self.next_phase - whole + random::unit(offsets, m);
+        let draws = [0, 1, 2].map(|n| random::key(self.key, whole as u64 + n));
+        let mut curves = [[0.0; MAX_MODES]; 2];
+        for m in 0..len.min(MAX_MODES) {
+            let number = cell * MAX_MODES + m;
+            let stagger = STAGGER * number as f64;
+            let place = self.next_phase - whole + stagger - f64::from(stagger as u32);
             let (first, share) = if place < 1.0 { (0, place) } else { (1, place - 1.0) };
-            let [from, to] = [first, first + 1].map(|n| f64::from(random::uniform(draws[n], m)));
-            from + (to - from) * share * share * (3.0 - 2.0 * share)
-        })
+            let [from, to] = [first, first + 1].map(|n| random::bits(draws[n], number as u64));
+            let share = share * share * (3.0 - 2.0 * share);
+            for (curve, shift) in curves.iter_mut().zip([0, 32]) {
+                let [from, to] =
+                    [from, to].map(|bits| f64::from((bits >> shift) as u32 as i32) * (1.0 / 2_147_483_648.0));
+                curve[m] = from + (to - from) * share;
+            }
+        }
+        curves
     }
 }
 
@@ -95,7 +90,7 @@ mod tests {
             .map(|n| {
                 drift.phase = rate * tick * f64::from(n);
                 drift.next_phase = drift.phase;
-                drift.numbers(LEVELS, 1)
+                drift.curves(1, MAX_MODES)[0]
             })
             .collect();
         let course = |m: usize| curves.iter().map(move |row| row[m]);

@@ -171,8 +171,12 @@ impl SynthVoice {
         if self.decay.control(&self.controls, modes, &mut self.bank) {
             self.energy.forget_end();
         }
-        self.drift.control(&self.controls, [passed, self.clock.seconds(frames as u64)]);
-        self.colour.control(self.controls.colour, &self.drift, modes, &mut self.bank);
+        let is_played = self.is_held && (self.controls.bow_speed > 0.0 || self.strike.blowing.may_blow());
+        self.drift.control(&self.controls, is_played, [passed, self.clock.seconds(frames as u64)]);
+        // What plays or touches feels the pitches of the modes.
+        let is_felt = self.strike.is_touched() || self.strike.rattling.is_on();
+        let frequency = (!is_felt).then(|| self.pitch.frequency());
+        self.colour.control(self.controls.colour, &self.drift, frequency, modes, &mut self.bank);
         self.energy.measure_always(self.may_move || self.controls.tension > 0.0 || self.blooms());
         let energy = || self.energy.now() / self.strike.full_energy();
         let tension = self.tension.control(&self.controls, energy, self.fresh, self.sample_rate, frames);
@@ -183,8 +187,8 @@ impl SynthVoice {
             if !self.modulators.are_idle() {
                 start = Some([self.controls.gain_left, self.controls.gain_right]);
                 self.move_controls(base, wheels, frames);
-                self.drift.control(&self.controls, [0.0, self.clock.seconds(frames as u64)]);
-                self.colour.control(self.controls.colour, &self.drift, modes, &mut self.bank);
+                self.drift.control(&self.controls, is_played, [0.0, self.clock.seconds(frames as u64)]);
+                self.colour.control(self.controls.colour, &self.drift, frequency, modes, &mut self.bank);
             }
         }
         match instrument {
@@ -195,9 +199,6 @@ impl SynthVoice {
         self.control_rattle(instrument);
         self.aim_gain(start, wheels, frames);
         self.control_driven(instrument, frames);
-        if !self.strike.is_touched() && !self.strike.rattling.is_on() {
-            self.drift.detune(self.pitch.frequency(), &mut self.bank);
-        }
         self.fresh = false;
     }
 
