@@ -349,6 +349,7 @@ fn busy(form: usize) -> Patch {
         (Release, 0.2),
         (Gain, -12.0),
         (Damper, 20.0),
+        (DriftLevel, 3.0),
         (Bloom, if form == 0 { 60.0 } else { 0.0 }),
         (Touch, if form == 1 { 40.0 } else { 0.0 }),
         (Unison, 3.0),
