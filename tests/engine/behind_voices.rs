@@ -50,6 +50,13 @@ fn wet(space: f32) -> Patch {
         .with(Param::StereoWidth, 150.0)
 }
 
+/// A kit of two sounds on alternate keys.
+fn kit_of(patches: [Patch; 2]) -> Arc<Kit> {
+    let sounds = patches.map(|patch| Arc::new(Sound::new(patch))).into();
+    let pads = (0..128).map(|key| Some(Pad::of(key % 2))).collect();
+    Arc::new(Kit::new(String::new(), sounds, pads))
+}
+
 fn set(frame: u32, param: Param, value: f32) -> Event {
     event(frame, EventKind::Param { param, value })
 }
@@ -294,12 +301,7 @@ fn in_silence_settings_hold_at_once() {
 
 #[test]
 fn a_kit_of_several_has_the_space_that_all_of_its_sounds_have() {
-    let kit = |patches: [Patch; 2]| {
-        let sounds = patches.map(|patch| Arc::new(Sound::new(patch))).into();
-        let pads = (0..128).map(|key| Some(Pad::of(key % 2))).collect();
-        Arc::new(Kit::new(String::new(), sounds, pads))
-    };
-    let agreed = kit([wet(SPRING), wet(SPRING).with(Param::Drive, 9.0)]);
+    let agreed = kit_of([wet(SPRING), wet(SPRING).with(Param::Drive, 9.0)]);
     let value = |param| agreed.values().get(param);
     assert_eq!([Param::Space, Param::ToneLow, Param::Drive].map(value), [SPRING, 3.0, 0.0]);
     let mut synth = Synth::new(RATE, 1);
@@ -380,13 +382,9 @@ fn routes_move_effects() {
 #[test]
 fn each_strike_of_a_kit_brings_the_routes_of_its_sound() {
     let routed = |param| Patch { routes: Routes::NONE, ..dry() }.with_route(0, Source::Macro1, param, 100.0);
-    let kit = |patches: [Patch; 2]| {
-        let sounds = patches.map(|patch| Arc::new(Sound::new(patch))).into();
-        Arc::new(Kit::new(String::new(), sounds, (0..128).map(|key| Some(Pad::of(key % 2))).collect()))
-    };
     let bits = |patches, events: &[Event]| {
         let mut synth = Synth::new(RATE, 1);
-        synth.set_kit(&kit(patches));
+        synth.set_kit(&kit_of(patches));
         in_blocks(events, 60_000, 512, |events, left, right| synth.process(events, left, right))
     };
     let both = [routed(Param::ToneHigh), routed(Param::Drive)];

@@ -264,22 +264,22 @@ impl ModeBank {
     /// Gives the modes, in their order, new frequencies in Hz and T60s in seconds while they ring. The pitch does not
     /// change until the next [`ModeBank::sweep_to`], which must follow.
     pub(crate) fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
-        let sample_rate = self.sample_rate;
-        let mut ln_radii = self.ln_radius;
-        let frequencies = modes.zip(&mut ln_radii).map(|((frequency, t60), to)| {
-            *to = ln_radius(t60, sample_rate);
-            frequency
-        });
-        self.transpose(frequencies);
-        self.ln_radius = ln_radii;
+        for (m, (frequency, t60)) in modes.take(self.len).enumerate() {
+            self.set_frequency(m, frequency);
+            self.set_t60(m, t60);
+        }
     }
 
     /// As [`ModeBank::retune`], with the T60s that they have.
     pub(crate) fn transpose(&mut self, frequencies: impl Iterator<Item = f64>) {
-        self.leave_tables();
-        for (half_angle, frequency) in self.half_angle[..self.len].iter_mut().zip(frequencies) {
-            *half_angle = 0.5 * angle_from_frequency(frequency, self.sample_rate);
+        for (m, frequency) in frequencies.take(self.len).enumerate() {
+            self.set_frequency(m, frequency);
         }
+    }
+
+    fn set_frequency(&mut self, m: usize, frequency: f64) {
+        self.leave_tables();
+        self.half_angle[m] = 0.5 * angle_from_frequency(frequency, self.sample_rate);
         (self.retuned, self.transposed, self.displaced) = (true, true, false);
     }
 

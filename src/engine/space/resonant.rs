@@ -2,7 +2,7 @@
 
 use super::bodies::{self, Bodies};
 use crate::dsp::space::{Decay, ModalReverb, Resonator};
-use crate::params::{Param, Space, StringsTuning, Values};
+use crate::params::{Param, Space, Values};
 use crate::units::ratio_from_semitones;
 
 /// Level of strings at 100 %. Set with noise as their input; input at the strings' own frequencies excites them far more.
@@ -12,7 +12,6 @@ const FULL_STRINGS: f32 = 0.3;
 pub(super) struct Resonant {
     bodies: &'static Bodies,
     pub(super) strings: ModalReverb,
-    tuning: Option<StringsTuning>,
     pub(super) reverb: ModalReverb,
     space: Space,
 }
@@ -25,20 +24,16 @@ impl Resonant {
             let decay = Decay { low: 1.0, high: 1.0 };
             ModalReverb::new(Resonator::with_room(masses, decay, sample_rate))
         });
-        Self { bodies, strings, tuning: None, reverb, space: Space::None }
+        Self { bodies, strings, reverb, space: Space::None }
     }
 
+    /// Applies a parameter that has changed.
     pub(super) fn follow(&mut self, param: Param, values: &Values) {
-        let Self { bodies, strings, tuning, reverb, space } = self;
+        let Self { bodies, strings, reverb, space } = self;
         let decay = |low, high| Decay { low: f64::from(values.get(low)), high: f64::from(values.get(high)) };
         match param {
             Param::StringsLevel => strings.set_levels(1.0, FULL_STRINGS * 0.01 * values.get(param)),
-            Param::StringsTuning => {
-                let wanted = values.choice(param);
-                if tuning.replace(wanted) != Some(wanted) {
-                    strings.set_body(bodies.of_strings(wanted));
-                }
-            }
+            Param::StringsTuning => strings.set_body(bodies.of_strings(values.choice(param))),
             Param::StringsTune => strings.set_pitch(ratio_from_semitones(values.get(param).into()) as f32),
             Param::StringsLowDecay | Param::StringsHighDecay => {
                 strings.set_decay(decay(Param::StringsLowDecay, Param::StringsHighDecay));

@@ -48,11 +48,18 @@ impl Drift {
 
     /// Gains of the first `len` modes of a cell at the next control tick, 0–1, and the ratios of their pitches.
     pub(super) fn at(&self, cell: usize, len: usize) -> [[f64; MAX_MODES]; 2] {
-        let [levels, pitches] = self.curves(cell, len);
-        let falls = levels.map(|level| 0.5 * (level - 1.0));
         let [mut gains, mut ratios] = [[1.0; MAX_MODES]; 2];
-        powers(&falls[..len], self.fall * (LOG2_10 / 20.0), &mut gains);
-        powers(&pitches[..len], self.octaves, &mut ratios);
+        let [drifts, detunes] = self.moves();
+        if drifts || detunes {
+            let [levels, pitches] = self.curves(cell, len);
+            if drifts {
+                let falls = levels.map(|level| 0.5 * (level - 1.0));
+                powers(&falls[..len], self.fall * (LOG2_10 / 20.0), &mut gains);
+            }
+            if detunes {
+                powers(&pitches[..len], self.octaves, &mut ratios);
+            }
+        }
         [gains, ratios]
     }
 

@@ -156,8 +156,7 @@ impl Part {
 
     /// The highest value of a parameter in the case: set by a patch or an event, or modulated to its maximum, and raised by routes.
     fn most(&self, case: &Case, asked: Param) -> f64 {
-        let programs = case.programs.iter().filter(|_| self.ensemble);
-        let set = programs.chain([&self.patch]).map(|patch| patch.get(asked));
+        let set = self.patches(case).map(|patch| patch.get(asked));
         let moved = self.events(case).filter_map(|event| match event.kind {
             EventKind::Param { param, value } if param == asked => Some(asked.info().clamp(value)),
             EventKind::Modulate { param, .. } if param == asked => Some(asked.info().max),
@@ -168,19 +167,12 @@ impl Part {
 
     /// How far routes raise parameters at most, in travel of their knobs.
     fn most_raised(&self, case: &Case) -> Vec<(Param, f64)> {
-        let patches = || case.programs.iter().filter(|_| self.ensemble).chain([&self.patch]);
-        let raised = patches().flat_map(|patch| {
-            patch.routes.iter().map(move |(place, route)| {
-                let amount = amount_param(place);
-                let is_routed =
-                    patches().any(|patch| patch.routes.iter().any(|(_, route)| route.destination == amount));
-                let is_moved = |event: &Event| match event.kind {
-                    EventKind::Param { param, .. } | EventKind::Modulate { param, .. } => param == amount,
-                    _ => false,
-                };
-                let moves = is_routed || self.events(case).any(is_moved);
-                (route.destination, if moves { 1.0 } else { 0.01 * fabs(patch.get(amount).into()) })
-            })
+        let routes = self.patches(case).flat_map(|patch| patch.routes.iter().map(move |route| (patch, route)));
+        let raised = routes.map(|(patch, (place, route))| {
+            let amount = amount_param(place);
+            let leads_there = |patch: &Patch| patch.routes.iter().any(|(_, route)| route.destination == amount);
+            let moves = self.patches(case).any(leads_there) || self.is_moved(case, amount);
+            (route.destination, if moves { 1.0 } else { 0.01 * fabs(patch.get(amount).into()) })
         });
         raised.collect()
     }
@@ -211,15 +203,23 @@ impl Part {
     /// The amplitudes of `n` modes add up to at most `√n` times the root of their energy. After several strikes, that root is at
     /// most the sum of the amplitudes of all strikes. Bloom does not change the energy.
     fn most_bloom(&self, case: &Case) -> Option<f64> {
-        let patches = || case.programs.iter().filter(|_| self.ensemble).chain([&self.patch]);
-        let is_moved = |event: &Event| match event.kind {
-            EventKind::Param { param, .. } | EventKind::Modulate { param, .. } => param == Param::Bloom,
-            _ => false,
-        };
-        let blooms = patches().any(|patch| self.raised(Param::Bloom, patch.get(Param::Bloom)) > 0.0)
-            || self.events(case).any(is_moved);
-        let modes = patches().map(|patch| patch.modes.as_slice().len()).max()?;
+        let blooms = self.patches(case).any(|patch| self.raised(Param::Bloom, patch.get(Param::Bloom)) > 0.0)
+            || self.is_moved(case, Param::Bloom);
+        let modes = self.patches(case).map(|patch| patch.modes.as_slice().len()).max()?;
         blooms.then_some(sqrt(modes as f64))
+    }
+
+    /// The patches that it may play.
+    fn patches<'a>(&'a self, case: &'a Case) -> impl Iterator<Item = &'a Patch> {
+        case.programs.iter().filter(|_| self.ensemble).chain([&self.patch])
+    }
+
+    /// Whether an event sets or modulates a parameter.
+    fn is_moved(&self, case: &Case, asked: Param) -> bool {
+        self.events(case).any(|event| match event.kind {
+            EventKind::Param { param, .. } | EventKind::Modulate { param, .. } => param == asked,
+            _ => false,
+        })
     }
 
     /// The events that this synth receives.
@@ -294,9 +294,14 @@ impl Part {
         f64::from(modulated(self.patch.get(param), param, self.offsets[param as usize]))
     }
 
+    /// The present value of a parameter, raised by routes.
+    fn highest(&self, param: Param) -> f64 {
+        self.raised(param, self.value(param) as f32).into()
+    }
+
     /// The gain of an exciter's level: the lowest is off.
     fn level(&self, param: Param) -> f64 {
-        let db = f64::from(self.raised(param, self.value(param) as f32));
+        let db = self.highest(param);
         if db > -60.0 { gain_from_db(db) } else { 0.0 }
     }
 
@@ -348,7 +353,7 @@ impl Part {
     /// The reach with one table of modes.
     fn reach_of(&self, table: &ModeTable) -> Reach {
         let modes = table.as_slice();
-        let varied = gain_from_db(self.raised(Param::VaryModes, self.value(Param::VaryModes) as f32).into());
+        let varied = gain_from_db(self.highest(Param::VaryModes));
         let tilt = self.value(Param::Tilt) / (20.0 / LOG2_10);
         let tilted = |mode: &Mode| fabs(f64::from(mode.level)) * pow(f64::from(mode.ratio), tilt);
         let plain: f64 = modes.iter().map(|mode| fabs(f64::from(mode.level))).sum();

@@ -80,6 +80,11 @@ impl Browser {
         self.sounds = None;
     }
 
+    /// Whether the sounds have changed since they were read.
+    pub(super) fn is_stale(&self) -> bool {
+        self.sounds.is_none()
+    }
+
     /// Prepares for being shown, with the name of the loaded sound: for finding another one, or for saving this one.
     pub(super) fn open(&mut self, name: &str, aim: Aim) {
         self.details.open(name);

@@ -235,7 +235,9 @@ impl Window {
                 if let Some((message, is_done)) = self.browser.show(ui, layout.page(), &mut controls) {
                     self.message = message;
                     self.over = self.over.filter(|_| !is_done);
-                    self.shown.read_again(&params);
+                    if self.browser.is_stale() {
+                        self.shown.read_again(&params);
+                    }
                 }
             }
             Some(Over::Manual) => {
