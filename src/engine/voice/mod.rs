@@ -308,8 +308,7 @@ impl SynthVoice {
         self.energy.settle(&mut self.bank, &self.strike, &self.fader, rings);
         if blooms {
             self.bloom.climb(&self.controls, self.strike.full_energy(), self.sample_rate, &mut self.bank);
-            // The point that rattles is suddenly elsewhere.
-            self.strike.rattling.interrupt();
+            self.strike.rattling.bloom();
         }
     }
 

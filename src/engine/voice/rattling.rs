@@ -31,15 +31,17 @@ pub(super) struct Rattling {
     rattle: Option<Rattle>,
     /// The pitch ratio of the modes when it began.
     ratio: f64,
+    /// Whether the body has bloomed since the voice began.
+    has_bloomed: bool,
 }
 
 impl Rattling {
     /// Nothing rattles.
-    pub(super) const OFF: Self = Self { kind: Kind::Off, rattle: None, ratio: 1.0 };
+    pub(super) const OFF: Self = Self { kind: Kind::Off, rattle: None, ratio: 1.0, has_bloomed: false };
 
     /// Prepares what a strike makes rattle; it begins at the next [`Rattling::control`].
     pub(super) fn strike(&mut self, kind: Kind) {
-        *self = Self { kind, ..Self::OFF };
+        (self.kind, self.rattle) = (kind, None);
     }
 
     /// Whether anything rattles, or may begin to.
@@ -68,14 +70,14 @@ impl Rattling {
             self.interrupt();
         }
         if energy < STILL {
-            *self = Self::OFF;
+            self.strike(Kind::Off);
         } else if let (None, Some(values), Some(now)) = (&self.rattle, values, bank.pitch().filter(|now| is_near(*now)))
         {
             self.ratio = now;
             self.rattle = self.begin(values, full, note, bank);
             if self.rattle.is_none() {
                 // A body that no strike moves hits nothing.
-                *self = Self::OFF;
+                self.strike(Kind::Off);
             }
             return true;
         }
@@ -92,18 +94,19 @@ impl Rattling {
     ) -> Option<Rattle> {
         let modes = values.modes().as_slice();
         let place = values.share(Param::RattlePosition);
-        let weights = strengths(modes, frequency, place);
+        let mut weights = strengths(modes, frequency, place);
         let [levels, ..] = values.tilted_levels();
         // A mode's level is that of an impulse at its antinode.
-        let touch = |m: usize, _| {
-            let struck = f64::from(modes[m].strike).max(HEARD_ONLY);
-            [levels[m] * sin(PI * place * f64::from(modes[m].ratio)), weights[m] * struck]
-        };
-        let compliance = bank.set_touched(1, touch).iter().sum();
+        let push = |m: usize| levels[m] * sin(PI * place * f64::from(modes[m].ratio));
+        if self.has_bloomed {
+            weigh_as_heard(&mut weights[..modes.len().min(MAX_MODES)], push);
+        }
+        let struck = |m: usize| if self.has_bloomed { 1.0 } else { f64::from(modes[m].strike) };
+        let compliance = bank.set_touched(1, |m, _| [push(m), weights[m] * struck(m).max(HEARD_ONLY)]).iter().sum();
         // Speed and swing of the point after a full strike, from modes of any phases.
         let (mut speeds, mut swings) = (0.0, 0.0);
         for (m, mode) in modes.iter().enumerate().take(MAX_MODES) {
-            let speed = full * weights[m] * f64::from(mode.strike);
+            let speed = full * weights[m] * struck(m);
             let swing = speed * sample_rate / (TAU * frequency * f64::from(mode.ratio));
             (speeds, swings) = (speeds + speed * speed, swings + swing * swing);
         }
@@ -127,9 +130,22 @@ impl Rattling {
         self.rattle.as_mut()
     }
 
-    /// A hammer or a player has taken the modes' contacts, or they are suddenly elsewhere: the rattle begins anew. (While a body blooms, it
-    /// does at every control tick, so that a loose mass hardly leaves it.)
+    /// A hammer or a player has taken the modes' contacts: the rattle begins anew.
     pub(super) fn interrupt(&mut self) {
         self.rattle = None;
     }
+
+    /// The body blooms: the point that rattles is suddenly elsewhere. So the rattle begins anew at every control tick, and a loose mass
+    /// hardly leaves the body.
+    pub(super) fn bloom(&mut self) {
+        (self.rattle, self.has_bloomed) = (None, true);
+    }
+}
+
+/// Gives all modes the same energy for the same level, as the bloom counts it, in place of that of their swing; the body as a whole gives
+/// way as before. What one of them moved to modes that are heavy for the other would come back louder, each time anew.
+fn weigh_as_heard(weights: &mut [f64], push: impl Fn(usize) -> f64) {
+    let [before, after] = [weights.iter().sum(), (0..weights.len()).map(|m| push(m) * push(m)).sum::<f64>()];
+    let share = if after > 0.0 { before / after } else { 0.0 };
+    weights.iter_mut().enumerate().for_each(|(m, weight)| *weight = share * push(m) * push(m));
 }
