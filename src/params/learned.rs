@@ -16,27 +16,32 @@ pub fn bind(controllers: &mut Controllers, param: Param, controller: Option<u8>)
     }
 }
 
-/// Refuses the numbers that are no knobs or faders: what they say would be lost, or be taken for a position.
+/// Refuses the numbers that are parts of messages: what they say would be lost, or be taken for a position.
 ///
 /// # Errors
 /// What the controller is for.
 pub fn check_controller(controller: u8) -> Result<(), String> {
     match duty(controller) {
         None => Ok(()),
-        Some(duty) => Err(format!("controller {controller} {duty}, and cannot move a parameter: expected another one")),
+        Some(duty) => Err(format!(
+            "controller {controller} {duty}, and cannot move a parameter: expected 1 to 119 without 6, 32, 38 and 96 to 101"
+        )),
     }
 }
 
-/// What a number is for that is no knob or fader. Real-time safe.
+/// What a number is for that is no knob, fader, pedal or switch. Real-time safe.
 const fn duty(controller: u8) -> Option<&'static str> {
     match controller {
         0 | 32 => Some("selects banks"),
         6 | 38 | 96..=101 => Some("sets registered parameters"),
-        64..=69 => Some("is a pedal or switch"),
-        84 => Some("names the key that a glide begins at"),
         120.. => Some("ends notes and sets modes"),
         _ => None,
     }
+}
+
+/// Whether a number is that of a pedal or switch, whose last position goes on acting.
+const fn is_pedal(controller: u8) -> bool {
+    matches!(controller, 64..=69)
 }
 
 /// Nobody waits for a controller, or somebody does; any other number is that of the one that came.
@@ -129,6 +134,8 @@ struct Hold {
     at: Option<f32>,
     /// The value that it has given to its parameter, if it had hold of it.
     given: Option<(Param, f32)>,
+    /// Whether it is a pedal that was pressed as one, and not let go of yet.
+    is_down: bool,
 }
 
 impl Default for Takeover {
@@ -149,15 +156,18 @@ impl Takeover {
         at: f32,
         present: impl FnOnce(&'static ParamInfo) -> f32,
     ) -> Movement {
-        if learned.hear(controller) {
-            return Movement::Nothing;
-        }
-        let (Some(info), Some(hold)) = (learned.param(controller), self.0.get_mut(usize::from(controller))) else {
+        let Some(hold) = self.0.get_mut(usize::from(controller)) else { return Movement::Free };
+        let before = hold.at.replace(at).unwrap_or(at);
+        let is_heard = learned.hear(controller);
+        let param = learned.param(controller).filter(|_| !is_heard);
+        // A pedal that is bound while it is down would hold its notes for ever.
+        if hold.is_down || !is_heard && param.is_none() {
+            hold.is_down = is_pedal(controller) && at > 0.0;
             return Movement::Free;
-        };
+        }
+        let Some(info) = param else { return Movement::Nothing };
         let (present, value) = (present(info), info.denormalise(at.into()));
         let position = info.normalise(present) as f32;
-        let before = hold.at.replace(at).unwrap_or(at);
         let reached = before.min(at) - STEP..=before.max(at) + STEP;
         let has_hold = hold.given == Some((info.param, present)) || value == present || reached.contains(&position);
         hold.given = has_hold.then_some((info.param, value));
@@ -239,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn while_somebody_listens_controllers_do_nothing_else_and_pedals_stay_pedals() {
+    fn while_somebody_listens_controllers_do_nothing_else_and_parts_of_messages_stay_those() {
         let learned = Learned::default();
         learned.publish(&Controllers::from([(21, Param::Decay)]));
         let mut takeover = Takeover::default();
@@ -247,7 +257,7 @@ mod tests {
         assert!(matches!(follow(21), Movement::Turns(_)) && matches!(follow(7), Movement::Free));
         learned.listen();
         assert!(
-            matches!(follow(64), Movement::Free) && learned.heard() == Some(64),
+            matches!(follow(101), Movement::Free) && learned.heard() == Some(101),
             "it is told why it cannot be bound"
         );
         learned.listen();
@@ -255,6 +265,25 @@ mod tests {
         assert!(matches!(follow(21), Movement::Nothing) && learned.heard() == Some(7), "the first one counts");
         learned.stop();
         assert!(matches!(follow(21), Movement::Turns(_)) && learned.heard().is_none());
+    }
+
+    #[test]
+    fn a_pedal_turns_a_knob_but_lets_go_of_its_notes_first() {
+        let learned = Learned::default();
+        let mut takeover = Takeover::default();
+        let mut follow = |learned: &Learned, at| takeover.follow(learned, 64, at, |info| info.denormalise(0.0));
+        learned.listen();
+        assert!(matches!(follow(&learned, 1.0), Movement::Nothing) && learned.heard() == Some(64));
+        learned.stop();
+        // Pressed as a pedal, and bound before it is let go of.
+        assert!(matches!(follow(&learned, 1.0), Movement::Free));
+        learned.publish(&Controllers::from([(64, Param::Decay)]));
+        learned.listen();
+        assert!(matches!(follow(&learned, 0.4), Movement::Free) && learned.heard() == Some(64));
+        learned.stop();
+        assert!(matches!(follow(&learned, 0.0), Movement::Free), "half a pedal holds too");
+        assert!(matches!(follow(&learned, 1.0), Movement::Turns(info) if info.param == Param::Decay));
+        assert!(matches!(follow(&learned, 0.0), Movement::Turns(_)));
     }
 
     #[test]
@@ -273,12 +302,17 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_knob_is_refused_with_a_word() {
+    fn only_parts_of_messages_are_refused_with_a_word_and_what_would_be_right() {
         let free: Vec<u8> = (0..=255).filter(|controller| check_controller(*controller).is_ok()).collect();
-        assert_eq!(free.len(), 120 - 2 - 2 - 6 - 6 - 1);
-        for (controller, word) in [(0, "banks"), (64, "pedal"), (101, "registered"), (123, "notes"), (255, "modes")] {
+        let right =
+            (1..=119).filter(|controller| ![6, 32, 38].contains(controller) && !(96..=101).contains(controller));
+        assert_eq!(free, right.collect::<Vec<u8>>());
+        for (controller, word) in
+            [(0, "banks"), (38, "registered"), (101, "registered"), (123, "notes"), (255, "modes")]
+        {
             let message = check_controller(controller).unwrap_err();
             assert!(message.contains(word) && message.contains(&controller.to_string()), "{message}");
+            assert!(message.ends_with("expected 1 to 119 without 6, 32, 38 and 96 to 101"), "{message}");
         }
     }
 }

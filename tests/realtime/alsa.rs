@@ -227,7 +227,10 @@ fn controllers_are_learnt_listed_and_forgotten() {
     assert_eq!(run("").0.as_deref(), Ok(two), "they are kept");
     assert_eq!(run("--forget decay --learn tilt=22").0.as_deref(), Ok("  --learn tilt=22\n"));
     for (options, expected) in [
-        ("--learn tilt=64", "controller 64 is a pedal or switch, and cannot move a parameter: expected another one"),
+        (
+            "--learn tilt=32",
+            "controller 32 selects banks, and cannot move a parameter: expected 1 to 119 without 6, 32",
+        ),
         ("--learn tilt=128", "controller 128 is out of range: expected 0 to 127"),
         ("--learn tlit=1", "there is no parameter ‘tlit’; the nearest is ‘tilt’"),
         ("--learn tilt", "expected ID=CONTROLLER, as in decay=21"),

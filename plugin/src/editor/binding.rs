@@ -52,8 +52,9 @@ pub(super) fn follow(ui: &Ui, library: Option<&Library>, controls: &mut Controls
                     return Some(Err("nothing was learnt: another window has ended it".to_owned()));
                 }
                 let asks = !std::mem::replace(is_prompted, true);
-                return asks
-                    .then(|| Ok(format!("{}: move the knob or fader that is to turn it; Escape gives up", info.name)));
+                return asks.then(|| {
+                    Ok(format!("{}: move the knob, fader or pedal that is to turn it; Escape gives up", info.name))
+                });
             };
             if let Err(reason) = check_controller(controller) {
                 learned.listen();

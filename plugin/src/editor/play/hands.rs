@@ -10,6 +10,9 @@ use sprung::patch::routes::{Route, Routes, Source, amount_param};
 const CONTROLLERS: [(Source, &str); 4] =
     [(Source::Wheel, "Wheel"), (Source::Pressure, "Pressure"), (Source::Breath, "Breath"), (Source::Timbre, "Slide")];
 
+/// Said of a sound that they do not move.
+const NOTHING: &str = "Wheel and pressure move nothing yet: drag them to knobs, on Motion.";
+
 /// Shows as many controllers as fit, the first at the left, up to the right end of `rect`.
 pub(super) fn show(ui: &Ui, rect: Rect, routes: &Routes, controls: &Controls) {
     let is_on = |place| controls.value(amount_param(place).info()) != 0.0;
@@ -21,7 +24,8 @@ pub(super) fn show(ui: &Ui, rect: Rect, routes: &Routes, controls: &Controls) {
         }
         shown = longer;
     }
-    line(ui.painter(), rect, Align2::RIGHT_CENTER, &shown, SMALL, controls.palette.muted);
+    let said = if shown.is_empty() { NOTHING } else { &shown };
+    line(ui.painter(), rect, Align2::RIGHT_CENTER, said, SMALL, controls.palette.muted);
 }
 
 /// Such as `Pressure: bow force, vibrato`; none if no route whose amount is not 0 has the source.

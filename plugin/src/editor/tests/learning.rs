@@ -90,7 +90,11 @@ impl Band {
 fn the_next_controller_that_moves_turns_the_knob_and_is_kept() {
     let mut band = Band::new("Marimba", SIZE, Theme::Dark);
     band.pick("Mallet speed", "Learn a controller");
-    assert!(matches!(band.turn(64), Movement::Free) && band.kept().is_empty(), "a pedal stays one");
+    assert!(matches!(band.turn(101), Movement::Free) && band.kept().is_empty(), "it is part of a message");
+    band.stage.harness.get_by_label_contains("controller 101 sets registered parameters");
+    assert!(matches!(band.turn(64), Movement::Nothing));
+    assert_eq!(band.kept(), Controllers::from([(64, Param::MalletSpeed)]), "a pedal is a controller too");
+    band.pick("Mallet speed", "Learn a controller");
     assert!(matches!(band.turn(21), Movement::Nothing));
     assert_eq!(band.kept(), Controllers::from([(21, Param::MalletSpeed)]));
     assert!(!matches!(band.turn(21), Movement::Free) && matches!(band.turn(22), Movement::Free));
