@@ -17,14 +17,25 @@ pub fn printable_lines(text: &str) -> Cow<'_, str> {
     escape(text, |character| matches!(character, '\n' | '\t') || is_printable(character))
 }
 
-/// A file name made from a name: in lower case, with dashes in place of all characters but ASCII letters and digits.
+/// Longest [`slug`] in bytes: file systems take names of 255 bytes, and of 143 if they encrypt them.
+const LONGEST_SLUG: usize = 120;
+
+/// A file name made from a name: in lower case, with dashes in place of all characters but letters and digits of any script.
 pub fn slug(name: &str) -> String {
-    let words = name.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
-    words.collect::<Vec<_>>().join("-").to_ascii_lowercase()
+    let name = name.to_lowercase();
+    let words = name.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty());
+    shortened(words.collect::<Vec<_>>().join("-"), LONGEST_SLUG)
 }
 
-/// [`slug`], or `sound` for a name that has no ASCII letter and no digit.
-pub(crate) fn file_stem(name: &str) -> String {
+/// A [`slug`] of at most this many bytes.
+pub(crate) fn shortened(mut slug: String, bytes: usize) -> String {
+    slug.truncate(slug.floor_char_boundary(bytes));
+    slug.truncate(slug.trim_end_matches('-').len());
+    slug
+}
+
+/// [`slug`], or `sound` for a name that has no letter and no digit.
+pub fn file_stem(name: &str) -> String {
     Some(slug(name)).filter(|slug| !slug.is_empty()).unwrap_or_else(|| "sound".to_owned())
 }
 
@@ -75,6 +86,22 @@ mod tests {
             assert_eq!(printable(text), expected);
         }
         assert_eq!(printable_lines("a\n\tx\u{1b}[2Jb\n\r"), "a\n\tx\\u001b[2Jb\n\\u000d");
+    }
+
+    #[test]
+    fn names_of_any_script_are_names_of_files() {
+        for (name, file) in [
+            ("Church Bell", "church-bell"),
+            (" Friend’s  Bell (2) ", "friend-s-bell-2"),
+            ("Ω", "ω"),
+            ("Гонг Ёлка", "гонг-ёлка"),
+            ("锣/../鼓", "锣-鼓"),
+            ("★ \u{202e}", "sound"),
+        ] {
+            assert_eq!(file_stem(name), file);
+        }
+        assert_eq!(slug(&"锣".repeat(100)), "锣".repeat(40));
+        assert_eq!(shortened("ab-é".to_owned(), 4), "ab");
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::io::{Output, WavFormat, WavWriter};
 use crate::params::Param;
 use crate::sound::Kit;
-use crate::text::slug;
+use crate::text::{shortened, slug};
 use crate::units::gain_from_db;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -121,9 +121,7 @@ pub fn stems_of(job: &Job) -> Vec<Stem> {
 
 /// A name that begins with a number.
 fn named<'a>(number: &str, names: impl IntoIterator<Item = &'a str>) -> String {
-    let mut slug = slug(&names.into_iter().collect::<Vec<_>>().join("-"));
-    slug.truncate(NAME_LENGTH);
-    let slug = slug.trim_end_matches('-');
+    let slug = shortened(slug(&names.into_iter().collect::<Vec<_>>().join("-")), NAME_LENGTH);
     if slug.is_empty() { number.to_owned() } else { format!("{number}-{slug}") }
 }
 

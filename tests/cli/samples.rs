@@ -304,7 +304,7 @@ fn a_file_in_the_way_is_found_before_the_work() {
 fn an_instrument_without_a_name_of_letters_has_one() {
     let sandbox = Sandbox::new();
     let preset = String::from_utf8(sandbox.succeeds("presets show init")).unwrap();
-    let named = preset.lines().map(|line| if line.starts_with("name = ") { "name = \"鐘\"" } else { line });
+    let named = preset.lines().map(|line| if line.starts_with("name = ") { "name = \"♪\"" } else { line });
     sandbox.write("bell.toml", named.collect::<Vec<_>>().join("\n"));
     // Nothing of it sounds: its samples have a frame all the same.
     sandbox.succeeds(
