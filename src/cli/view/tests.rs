@@ -16,6 +16,9 @@ use sprung::sound::Tuning;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+/// Programs of the stand: some of the factory's, since tables of all 250 take seconds.
+const PROGRAMS: usize = 16;
+
 /// A view with a player that runs only when [`Stand::play`] is called.
 struct Stand {
     app: App,
@@ -34,7 +37,7 @@ impl Stand {
     fn named(device: &str, name: &str) -> Self {
         let ([keys, midi], inputs) = LiveInputs::new();
         let status = Arc::new(Status::default());
-        let programs: Vec<_> = Preset::factory().iter().map(Preset::kit).collect();
+        let programs: Vec<_> = Preset::factory().iter().take(PROGRAMS).map(Preset::kit).collect();
         let kit = Preset { name: name.into(), ..Preset::factory()[0].clone() }.kit();
         let channels = vec![];
         let setup = Setup {
