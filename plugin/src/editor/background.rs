@@ -1,12 +1,17 @@
 //! Work of seconds on a thread of its own, with its progress, which can be cancelled.
 
+use super::host::keep::keep_loaded;
 use sprung::Result;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::thread::{Builder, JoinHandle};
+use std::thread::{Builder, JoinHandle, sleep};
+use std::time::Duration;
 
 /// Number of steps in which progress is reported.
 const STEPS: f64 = 1000.0;
+/// How often, and at what intervals, it is looked whether work that was dropped has ended.
+const LOOKS: usize = 40;
+const INTERVAL: Duration = Duration::from_millis(5);
 
 /// What both threads see.
 #[derive(Default)]
@@ -81,11 +86,18 @@ impl<T> Background<T> {
     }
 }
 
-/// No code of the plugin may run after it has been unloaded, so the thread is joined.
+/// No code of the plugin may run after it has been unloaded, so the thread is joined. One that hangs, in a folder of a network that
+/// does not answer, is left to itself where the code can be kept loaded: nobody may wait for it.
 impl<T> Drop for Background<T> {
     fn drop(&mut self) {
         self.cancel();
-        if let Some(worker) = self.worker.take() {
+        let Some(worker) = self.worker.take() else { return };
+        let mut looks = LOOKS;
+        while looks > 0 && !worker.is_finished() {
+            looks -= 1;
+            sleep(INTERVAL);
+        }
+        if worker.is_finished() || !keep_loaded() {
             // The result is not wanted, not even a panic.
             let _ = worker.join();
         }
@@ -109,5 +121,17 @@ mod tests {
         let progress = work.progress.clone();
         drop(work);
         assert_eq!(Arc::strong_count(&progress), 1, "its thread is gone");
+    }
+
+    #[test]
+    fn work_that_hangs_is_waited_for_by_nobody() {
+        let (end, hanging) = std::sync::mpsc::channel::<()>();
+        let work =
+            Background::start("hanging".to_owned(), move |_| Ok(hanging.recv_timeout(Duration::from_secs(20)).is_ok()));
+        let work = work.unwrap();
+        let progress = work.progress.clone();
+        drop(work);
+        assert_eq!(Arc::strong_count(&progress), 1 + usize::from(keep_loaded()), "its thread still hangs");
+        drop(end);
     }
 }

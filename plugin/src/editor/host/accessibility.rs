@@ -3,10 +3,11 @@
 //! egui describes its widgets to AccessKit, but only while a screen reader listens; an egui plugin passes the
 //! description on to `accesskit_unix`, which speaks AT-SPI and returns requests at the next pass. AccessKit's thread
 //! never ends, and its code must not be unloaded under it: so the plugin's library marks itself as not to be unloaded
-//! (`RTLD_NODELETE`) before the first window starts the thread. Without a D-Bus session there is neither thread nor
+//! (`keep`) before the first window starts the thread. Without a D-Bus session there is neither thread nor
 //! mark. `plugin/tests/hosts/screen_reader` reads and turns a knob and presses a button over AT-SPI, and closes the
 //! library each time.
 
+use super::keep::keep_loaded;
 use super::x11::Display;
 use crate::lock::lock;
 use accesskit_unix::Adapter;
@@ -14,10 +15,9 @@ use egui::accesskit::{ActionHandler, ActionRequest, ActivationHandler, Deactivat
 use egui::{Context, Event, FullOutput, RawInput};
 use nice_plug_egui::RepaintNotifier;
 use nice_plug_egui::baseview::WindowContext;
-use std::ffi::c_void;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, Mutex};
 
 /// What screen readers ask for, from the thread that talks to them.
 struct Requests {
@@ -68,12 +68,10 @@ struct Accessibility {
     has_focus: bool,
 }
 
-/// Connects a window to screen readers, if the user's session has a bus for them. `is_library`: whether this code is in a
-/// library that a host can unload.
-pub(crate) fn connect(context: &Context, repaint: RepaintNotifier, is_library: bool) {
+/// Connects a window to screen readers, if the user's session has a bus for them.
+pub(crate) fn connect(context: &Context, repaint: RepaintNotifier) {
     // AccessKit's thread never ends: its code must stay where it is.
-    static IS_KEPT: OnceLock<bool> = OnceLock::new();
-    if !has_session_bus() || is_library && !IS_KEPT.get_or_init(keep_loaded) {
+    if !has_session_bus() || !keep_loaded() {
         return;
     }
     let requests = Arc::new(Requests { is_listening: AtomicBool::new(false), actions: Mutex::default(), repaint });
@@ -132,22 +130,4 @@ fn has_session_bus() -> bool {
     let folder = || std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
     std::env::var_os("DBUS_SESSION_BUS_ADDRESS")
         .map_or_else(|| folder().is_some_and(|folder| folder.join("bus").exists()), |address| !address.is_empty())
-}
-
-/// Keeps the library that has this code loaded for as long as the process runs. Returns whether that was possible.
-#[allow(unsafe_code, reason = "there is no safe way to ask the system's loader")]
-fn keep_loaded() -> bool {
-    let mut about = libc::Dl_info {
-        dli_fname: std::ptr::null(),
-        dli_fbase: std::ptr::null_mut(),
-        dli_sname: std::ptr::null(),
-        dli_saddr: std::ptr::null_mut(),
-    };
-    let here: *const c_void = keep_loaded as *const c_void;
-    // SAFETY: `about` is the loader's own structure, and the name that it gives is valid while this library is loaded. The
-    // library is not opened anew (`RTLD_NOLOAD`), so none of its initialisers runs.
-    unsafe {
-        libc::dladdr(here, &mut about) != 0
-            && !libc::dlopen(about.dli_fname, libc::RTLD_NOW | libc::RTLD_NOLOAD | libc::RTLD_NODELETE).is_null()
-    }
 }

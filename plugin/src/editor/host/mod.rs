@@ -4,5 +4,6 @@
 pub(super) mod accessibility;
 pub(crate) mod extent;
 pub(super) mod focus;
+pub(super) mod keep;
 #[cfg(target_os = "linux")]
 mod x11;

@@ -17,10 +17,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 impl NiceEguiApp for Window {
     fn build(&mut self, context: egui::Context, host: GuiContext, frame: &mut Frame) -> Result<(), HandlerError> {
         #[cfg(target_os = "linux")]
-        {
-            let is_library = host.plugin_api() != PluginApi::Standalone;
-            accessibility::connect(&context, self.params.link().repaint.clone(), is_library);
-        }
+        accessibility::connect(&context, self.params.link().repaint.clone());
         self.open(host);
         self.params.extent().set(frame.baseview_window().size());
         self.context = Some(context);
