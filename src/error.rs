@@ -108,9 +108,9 @@ const LEAST_SIMILARITY: f64 = 0.55;
 
 const MOST_SUGGESTIONS: usize = 3;
 
-/// Similarity from 0 to 1, by the edits between the two texts. The edits between `word` and one word of the candidate
+/// Similarity from 0 to 1 of a word in lower case, by the edits between the two texts. The edits between `word` and one word of the candidate
 /// also count, with slightly less weight.
-fn similarity(word: &str, candidate: &str) -> f64 {
+pub(crate) fn similarity(word: &str, candidate: &str) -> f64 {
     let candidate = candidate.to_lowercase();
     let parts = candidate.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty());
     let of_part = parts.map(|part| 0.9 * strsim::normalized_damerau_levenshtein(word, part)).fold(0.0, f64::max);

@@ -3,7 +3,7 @@
 use super::library::Library;
 use super::traits::traits;
 use super::{Family, KitPreset, Playable, Preset};
-use crate::error::Error;
+use crate::error::{Error, similarity};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -130,6 +130,17 @@ impl Catalogue {
         });
         found
     }
+
+    /// All sounds, the nearest to these words first: those with the most of them, and of these the names that differ the least.
+    pub fn nearest(&self, words: &str) -> Vec<Arc<Listed>> {
+        let words = words.trim().to_lowercase();
+        let mut all = self.sounds.clone();
+        all.sort_by_cached_key(|listed| {
+            let missing = words.split_whitespace().filter(|word| !listed.has_words(word)).count();
+            (missing, ((1.0 - similarity(&words, listed.name())) * 1e6) as u32)
+        });
+        all
+    }
 }
 
 #[cfg(test)]
@@ -155,6 +166,9 @@ mod tests {
         assert!(found("hand drum").contains(&"Conga".to_owned()), "by its family");
         assert!(found("kit acoustic").contains(&"Acoustic Kit".to_owned()));
         assert!(found("no such sound").is_empty());
+        let nearest = |words: &str| all.nearest(words)[0].name().to_owned();
+        assert_eq!(["marimab", "acoustc kit"].map(nearest), ["Marimba", "Acoustic Kit"]);
+        assert!(nearest("no such marimba").ends_with("Marimba"), "it has one of the words");
         let tags = |name: &str| tags_of(&Playable::Preset(Preset::find(name).unwrap().clone())).join(" ");
         assert_eq!(tags("Marimba"), "mallet wood struck ringing");
         for (name, tag) in

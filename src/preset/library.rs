@@ -1,4 +1,4 @@
-//! The user's own presets and kits, as files in a folder of the user's data, and the list of favourites.
+//! The user's own presets and kits, as files in a folder of the user's data, and the lists of favourites and of recent sounds.
 
 use super::about::with_ending;
 use super::{Playable, Preset, is_file_name};
@@ -12,8 +12,12 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+/// How many of the sounds that were chosen last are kept.
+const RECENT: usize = 16;
+
 /// A folder with the user's sounds: `presets/` has their files, `bin/` the discarded files, `favourites.txt` the names
-/// of favourites, one per line, `controllers.toml` the controllers that move parameters.
+/// of favourites, one per line, `recent.txt` those of the sounds that were chosen last, `controllers.toml` the controllers that move
+/// parameters.
 #[derive(Clone, Debug)]
 pub struct Library {
     folder: PathBuf,
@@ -77,11 +81,10 @@ impl Library {
             1 => folder.join(format!("{stem}.toml")),
             number => folder.join(format!("{stem}-{number}.toml")),
         };
-        let is_it = |path: &PathBuf| read(path).is_ok_and(|found| found.name().eq_ignore_ascii_case(sound.name()));
         let paths = self.paths();
         let numbers = 1..=paths.len() as u32 + 1;
         // A file of any name may have it. If there are copies, the usual name comes first.
-        let named: Vec<PathBuf> = paths.into_iter().filter(is_it).collect();
+        let named = named(sound.name(), paths);
         let usual = numbers.clone().map(place).find(|path| named.contains(path));
         if let Some(path) = usual.or_else(|| named.into_iter().next()) {
             write_whole(&path, text.as_bytes(), replace)?;
@@ -132,6 +135,13 @@ impl Library {
         Ok((sound, place))
     }
 
+    /// Whether a path is one of the folder with the sounds' files, whether or not there is a file.
+    pub fn has(&self, path: &Path) -> bool {
+        // Both may be reached by symbolic links.
+        let folder = path.parent().and_then(|folder| folder.canonicalize().ok());
+        folder.is_some() && folder == self.presets_folder().canonicalize().ok()
+    }
+
     /// Checks that a file is one of the library's.
     fn check_own(&self, path: &Path) -> Result<()> {
         if path.parent() == Some(&self.presets_folder()) {
@@ -164,8 +174,7 @@ impl Library {
     /// # Errors
     /// [`Error::Io`] if the list cannot be read.
     pub fn favourites(&self) -> Result<BTreeSet<String>> {
-        let text = read_if_there(&self.favourites_file())?;
-        Ok(text.lines().map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned).collect())
+        Ok(names_in(&self.favourites_file())?.into_iter().collect())
     }
 
     /// Makes a sound a favourite, or not.
@@ -179,12 +188,32 @@ impl Library {
         } else {
             names.remove(name);
         }
-        let text: String = names.into_iter().map(|name| name + "\n").collect();
-        write_whole(&self.favourites_file(), text.as_bytes(), true)
+        write_names(&self.favourites_file(), names)
     }
 
     fn favourites_file(&self) -> PathBuf {
         self.folder.join("favourites.txt")
+    }
+
+    /// The names of the sixteen sounds that were chosen last, the newest first. Empty if there is no list.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the list cannot be read.
+    pub fn recent(&self) -> Result<Vec<String>> {
+        names_in(&self.recent_file())
+    }
+
+    /// Notes that a sound was chosen.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the list cannot be read or written.
+    pub fn note_recent(&self, name: &str) -> Result<()> {
+        let others = self.recent()?.into_iter().filter(|other| other != name);
+        write_names(&self.recent_file(), std::iter::once(name.to_owned()).chain(others).take(RECENT))
+    }
+
+    fn recent_file(&self) -> PathBuf {
+        self.folder.join("recent.txt")
     }
 
     /// The controllers that move parameters. None if there is no file of them.
@@ -248,12 +277,32 @@ fn data_folder(variable: &dyn Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
     Some(data.join("sprung"))
 }
 
-/// Writes the file of a sound to a path of any folder, whole or not at all; one that is there is replaced only if told so.
+/// Writes the file of a sound to a path of any folder, whole or not at all; one that is there is replaced only if told so. In the
+/// library's own folder, the file that has a sound of this name takes the place of the path. Returns the file's path.
 ///
 /// # Errors
 /// As [`Library::save`].
-pub fn export(sound: &Playable, path: &Path, replace: bool) -> Result<()> {
-    write_whole(path, text_of(sound)?.as_bytes(), replace)
+pub fn export(sound: &Playable, path: &Path, library: Option<&Library>, replace: bool) -> Result<PathBuf> {
+    let text = text_of(sound)?;
+    let own = library.filter(|library| library.has(path)).map(Library::paths).unwrap_or_default();
+    let same = named(sound.name(), own);
+    let path = same.first().filter(|_| !same.iter().any(|same| same == path)).map_or(path, PathBuf::as_path);
+    write_whole(path, text.as_bytes(), replace)?;
+    Ok(path.to_owned())
+}
+
+/// Checks that a sound can be saved.
+///
+/// # Errors
+/// [`Error::Value`] and [`Error::Format`] as [`Library::save`].
+pub fn check(sound: &Playable) -> Result<()> {
+    text_of(sound).map(drop)
+}
+
+/// The files among these that have a sound of this name.
+fn named(name: &str, paths: Vec<PathBuf>) -> Vec<PathBuf> {
+    let is_it = |path: &PathBuf| read(path).is_ok_and(|found| found.name().eq_ignore_ascii_case(name));
+    paths.into_iter().filter(is_it).collect()
 }
 
 /// Reads a preset or kit file.
@@ -281,6 +330,17 @@ fn text_of(sound: &Playable) -> Result<String> {
 fn free(mut places: impl Iterator<Item = PathBuf>, folder: &Path) -> Result<PathBuf> {
     let free = places.find(|place| !place.exists());
     free.ok_or_else(|| Error::value(folder.display().to_string(), "expected a folder with room for another file"))
+}
+
+/// The names in a list, one per line. None if there is no list.
+fn names_in(file: &Path) -> Result<Vec<String>> {
+    let text = read_if_there(file)?;
+    Ok(text.lines().map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned).collect())
+}
+
+fn write_names(file: &Path, names: impl IntoIterator<Item = String>) -> Result<()> {
+    let text: String = names.into_iter().map(|name| name + "\n").collect();
+    write_whole(file, text.as_bytes(), true)
 }
 
 /// The text of a file; of one that is not there, none.

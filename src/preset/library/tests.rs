@@ -18,7 +18,7 @@ fn presets_are_saved_under_their_names_and_replaced_only_when_told() {
     assert!(library.entries().is_empty());
     let path = library.save(&named("My Bell"), false).unwrap();
     assert_eq!(path.file_name().unwrap(), "my-bell.toml");
-    assert_eq!(library.save(&named("Ω"), false).unwrap().file_name().unwrap(), "sound.toml");
+    assert_eq!(library.save(&named("Ω"), false).unwrap().file_name().unwrap(), "ω.toml");
     assert!(matches!(library.save(&named("My Bell"), false), Err(Error::Exists { .. })));
     let names = |library: &Library| -> Vec<String> {
         library.entries().iter().map(|entry| entry.playable.as_ref().unwrap().name().to_owned()).collect()
@@ -97,7 +97,7 @@ fn sounds_of_other_names_are_not_replaced() {
         path.file_name().unwrap().to_string_lossy().into_owned()
     };
     assert_eq!(
-        ["My Bell", "my-bell!", "Ω", "β"].map(|name| save(name, true)),
+        ["My Bell", "my-bell!", "♪", "★"].map(|name| save(name, true)),
         ["my-bell.toml", "my-bell-2.toml", "sound.toml", "sound-2.toml"]
     );
     library.discard(&library.presets_folder().join("my-bell.toml")).unwrap();
@@ -109,7 +109,7 @@ fn sounds_of_other_names_are_not_replaced() {
     assert_eq!(save("my-bell!", true), "a name of its own.toml");
     fs::rename(&own, library.presets_folder().join("my-bell-2.toml")).unwrap();
     fs::write(library.presets_folder().join("sound-3.toml"), "broken").unwrap();
-    assert_eq!(save("λ", true), "sound-4.toml");
+    assert_eq!(save("♯", true), "sound-4.toml");
     assert_eq!(library.entries().len(), 5);
 }
 
@@ -152,6 +152,37 @@ fn favourites_are_kept() {
 }
 
 #[test]
+fn the_sixteen_sounds_that_were_chosen_last_are_kept_the_newest_first() {
+    let (_folder, library) = library();
+    assert!(library.recent().unwrap().is_empty());
+    for number in 0..20 {
+        library.note_recent(&format!("Sound {number}")).unwrap();
+    }
+    library.note_recent("Sound 10").unwrap();
+    let recent = library.recent().unwrap();
+    assert_eq!((recent.len(), &recent[..3]), (16, &["Sound 10", "Sound 19", "Sound 18"].map(str::to_owned)[..]));
+    assert_eq!(recent.iter().filter(|name| *name == "Sound 10").count(), 1);
+    // Not UTF-8.
+    fs::write(library.recent_file(), b"Kick\n\xff\n").unwrap();
+    assert!(library.recent().is_err() && library.note_recent("Kick").is_err());
+    assert_eq!(fs::read(library.recent_file()).unwrap(), b"Kick\n\xff\n", "not written over");
+}
+
+#[test]
+fn a_copy_in_the_library_s_folder_makes_no_second_sound_of_a_name() {
+    let (folder, library) = library();
+    let saved = library.save(&named("My Bell"), false).unwrap();
+    let [other, elsewhere] = [library.presets_folder().join("other.toml"), folder.path().join("other.toml")];
+    let export = |path: &Path, replace| export(&named("My Bell"), path, Some(&library), replace);
+    assert!(matches!(export(&other, false), Err(Error::Exists { path }) if path == saved.display().to_string()));
+    assert_eq!((export(&other, true).unwrap(), other.exists()), (saved, false));
+    assert_eq!(export(&elsewhere, false).unwrap(), elsewhere);
+    let new = super::export(&named("Second"), &other, Some(&library), false).unwrap();
+    assert_eq!((new, library.entries().len()), (other, 2));
+    assert!(check(&named("kick")).is_err() && check(&named("a/b")).is_err() && check(&named("My Bell")).is_ok());
+}
+
+#[test]
 fn controllers_are_kept_and_what_is_not_understood_is_not_written_over() {
     let (_folder, library) = library();
     assert_eq!(library.controllers().unwrap(), Controllers::new());
@@ -161,8 +192,8 @@ fn controllers_are_kept_and_what_is_not_understood_is_not_written_over() {
     assert_eq!(all, Controllers::from([(7, Param::Gain), (21, Param::Tilt)]));
     assert_eq!(library.set_controller(Param::Gain, None).unwrap(), library.controllers().unwrap());
     assert_eq!(fs::read_to_string(library.controllers_file()).unwrap(), "tilt = 21\n");
-    let refused = library.set_controller(Param::Decay, Some(64)).unwrap_err().to_string();
-    assert!(refused.starts_with("decay: controller 64 is a pedal"), "{refused}");
+    let refused = library.set_controller(Param::Decay, Some(32)).unwrap_err().to_string();
+    assert!(refused.starts_with("decay: controller 32 selects banks"), "{refused}");
     for (text, part) in [
         ("tilt 21", "expected"),
         ("tilt = 21\ntilt = 22", "duplicate"),

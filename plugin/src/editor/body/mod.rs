@@ -3,6 +3,7 @@
 pub(super) mod edit;
 pub(super) mod face;
 pub(super) mod numbers;
+pub(super) mod offer;
 pub(super) mod origin;
 pub(super) mod page;
 pub(super) mod view;

@@ -2,11 +2,12 @@
 
 use super::edit::BodyEdit;
 use super::numbers::{Number, Part, written};
+use super::offer::{offer, offer_alone};
 use super::origin::OriginShown;
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::keyboard::audition::Audition;
-use crate::editor::theme::{GAP, PADDING, SMALL, TEXT};
+use crate::editor::theme::{GAP, PADDING, SMALL};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::number;
@@ -30,6 +31,9 @@ const WIDEST: f32 = 124.0;
 /// Shown in place of a model if there is none.
 const NONE: &str = "none";
 const TABLE: &str = "a table of modes";
+/// What such a table lacks.
+const LACKS: &str = "This sound is a table of modes, typed in or fitted to a recording, and knows nothing of a body. Choose a \
+                     model: its modes take the table’s place.";
 
 /// The page's state.
 #[derive(Default)]
@@ -60,8 +64,7 @@ impl BodyPage {
         palette.paint_panel(ui.painter(), rect);
         let inner = rect.shrink(PADDING);
         if shown.preset().is_none() {
-            let text = "The sounds of a kit have bodies of their own. Load one of them to change its body.";
-            paragraph(ui.painter(), inner, text, TEXT, palette.muted);
+            offer_alone(ui, inner, shown, controls);
             return None;
         }
         if self.edit.as_ref().is_some_and(|edit| !edit.is_of(shown.loaded())) {
@@ -76,20 +79,23 @@ impl BodyPage {
             self.part = Part::First;
         }
         let side = inner.with_max_x(inner.left() + SIDE);
-        let mut message = None;
-        if let Some((changed, what)) = self.side(ui, side, &origin, controls) {
+        let rest = inner.with_min_x(side.right() + GAP);
+        let mut picked = self.side(ui, side, &origin, controls);
+        if origin == Origin::Table {
+            picked = offer(ui, rest, LACKS, (&origin, shown.guide().family), controls).or(picked);
+        }
+        if let Some((changed, what)) = picked {
             self.leave(controls);
-            message = BodyEdit::make(&origin, changed, what, shown.loaded(), controls).err();
+            let message = BodyEdit::make(&origin, changed, what, shown.loaded(), controls).err();
             self.audition.strike(
                 shown.guide().home,
                 crate::editor::keyboard::audition::VELOCITY,
                 now,
                 controls.params.link(),
             );
-        } else {
-            message = self.numbers(ui, inner.with_min_x(side.right() + GAP), &origin, shown, controls).or(message);
+            return message;
         }
-        message
+        if origin == Origin::Table { None } else { self.numbers(ui, rest, &origin, shown, controls) }
     }
 
     /// The body to show: while a number is dragged, the one that is being changed.
@@ -186,12 +192,7 @@ impl BodyPage {
     ) -> Option<String> {
         let numbers = self.part.numbers(origin);
         if numbers.is_empty() {
-            let text = if self.part == Part::Second {
-                "One body sounds. Choose a model, and a second one stands beside it; their joint says how they act on each other."
-            } else {
-                "This sound is a table of modes, typed in or fitted to a recording, and knows nothing of a body. Choose a model: its \
-                modes take the table’s place."
-            };
+            let text = "One body sounds. Choose a model, and a second one stands beside it; their joint says how they act on each other.";
             paragraph(ui.painter(), rect, text, SMALL, controls.palette.muted);
             return None;
         }

@@ -8,7 +8,7 @@ use crate::editor::widgets::text::{is_entered, line, name_field, paragraph, take
 use crate::loaded::Loaded;
 use egui::{Align2, Id, Rect, TextEdit, Ui, pos2, vec2};
 use sprung::preset::catalogue::Listed;
-use sprung::preset::library::Library;
+use sprung::preset::library::{Library, check};
 use sprung::preset::{Playable, Preset};
 use sprung::units::note_name;
 use std::sync::Arc;
@@ -94,15 +94,16 @@ impl Details {
         controls: &mut Controls,
     ) -> Option<Outcome> {
         let palette = controls.palette;
-        let mut top = rect.top();
+        let title = rect.with_max_y(rect.top() + TITLE_HEIGHT + 2.0);
+        line(ui.painter(), title, Align2::LEFT_CENTER, &controls.params.name(), TEXT + 3.0, palette.text);
+        let mut top = title.bottom() + 4.0;
         if let Some(sound) = shown {
-            let title = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), TITLE_HEIGHT + 2.0));
-            line(ui.painter(), title, Align2::LEFT_CENTER, sound.name(), TEXT + 3.0, palette.text);
-            top = title.bottom() + 4.0;
             let [keys, macros] = match &sound.playable {
                 Playable::Preset(Preset { guide, .. }) => {
                     let [lowest, highest, home] = [guide.lowest, guide.highest, guide.home].map(note_name);
-                    [format!("{lowest} to {highest}, best at {home}"), format!("macros: {}", guide.macros.join(", "))]
+                    let macros = guide.macros.join(", ");
+                    let macros = if macros.is_empty() { macros } else { format!("macros: {macros}") };
+                    [format!("{lowest} to {highest}, best at {home}"), macros]
                 }
                 Playable::Kit(kit) => [format!("kit of {} pads", kit.pads.len()), String::new()],
             };
@@ -120,6 +121,9 @@ impl Details {
                 let place = Rect::from_min_max(pos2(rect.left(), top), pos2(rect.right(), bottom.max(top)));
                 top += paragraph(ui.painter(), place, &text, SMALL + 0.5, palette.muted).max(6.0) + 2.0;
             }
+        } else {
+            let text = "In no file of yours yet: type a name below and press Enter, and it is kept.";
+            paragraph(ui.painter(), rect.with_min_y(top), text, SMALL + 0.5, palette.muted);
         }
         let mut enters = false;
         // Another sound may have been loaded since, by other ways than this list.
@@ -167,6 +171,11 @@ impl Details {
         }
         if response.clicked() {
             let sound = self.sound(controls);
+            // Before a folder is looked for.
+            if let Err(error) = check(&sound) {
+                self.takes_name = true;
+                return Some(Outcome::of(Err(error.to_string())));
+            }
             controls.interaction.pick = Some(Pick::Place(Box::new(sound)));
         }
         let wide = (rect.width() - 8.0) / 3.0;
@@ -201,7 +210,7 @@ impl Details {
         None
     }
 
-    /// Renames a file of the user's. If the sound is a favourite, it stays one under the new name.
+    /// Renames a file of the user's. The sound stays a favourite, if it is one, and a recent one under the new name.
     fn rename(&mut self, own: &Listed, library: &Library, controls: &Controls) -> Outcome {
         let name = self.name.trim().to_owned();
         let Some(path) = &own.path else { return Outcome::of(Err(String::new())) };
@@ -215,9 +224,9 @@ impl Details {
                 library.set_favourite(own.name(), false)?;
                 library.set_favourite(&name, true)?;
             }
-            Ok(())
+            library.note_recent(&name)
         };
-        let starred = star().map_err(|error| format!("renamed, but its star may be lost: {error}"));
+        let starred = star().map_err(|error| format!("renamed, but its place in lists may be lost: {error}"));
         if controls.params.name() == own.name() {
             controls.params.rename(name);
         }

@@ -18,7 +18,7 @@ use details::{Details, Outcome};
 use egui::{Id, Key, Rect, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, pos2, vec2};
 use likeness::Likeness;
 use list::{List, ROW, row};
-use sounds::{Category, Sounds};
+use sounds::{Category, NONE, Sounds};
 use sprung::preset::catalogue::Listed;
 use sprung::preset::library::Library;
 use sprung::preset::{Guide, Playable};
@@ -116,7 +116,12 @@ impl Browser {
         for x in [categories.right() + GAP, details.left() - GAP] {
             ui.painter().vline(ui.painter().round_to_pixel_center(x), inner.y_range(), Stroke::new(1.0, palette.line));
         }
+        let before = self.category;
         self.categories(ui, categories, palette);
+        if self.category != before {
+            // Not while they are shown: their order would change under the arrow keys.
+            sounds.read_recent();
+        }
         let mut message = None;
         let present = controls.params.name();
         let (search, rest) = list.split_top_bottom_at_y(list.top() + 28.0);
@@ -133,6 +138,13 @@ impl Browser {
         let mut found = sounds.find(self.category, &self.words, self.likeness.places());
         self.tags.retain(&mut found);
         self.tags.show(ui, tags, &found, palette);
+        let mut says = "";
+        if found.is_empty() {
+            says = self.category.invitation();
+            if says.is_empty() || !self.words.trim().is_empty() || !self.tags.are_empty() {
+                (found, says) = (sounds.nearest(&self.words, |_| true), NONE);
+            }
+        }
         let chosen = match command {
             Command::Nothing => None,
             // While another field has the focus, the arrow keys belong to that field.
@@ -147,7 +159,7 @@ impl Browser {
                 None
             }
         };
-        let list = List { found: &found, present: &present, chosen };
+        let list = List { found: &found, present: &present, chosen, says };
         let clicked = list.show(ui, rows, &sounds, palette);
         if let Some(sound) = clicked.star.and_then(|place| found.get(place)) {
             message = sounds.set_favourite(sound.name(), !sounds.is_favourite(sound)).map(Err).or(message);
@@ -155,7 +167,8 @@ impl Browser {
         if let Some(sound) = chosen.or(clicked.sound).and_then(|place| found.get(place)) {
             self.try_out(ui, sound, controls);
         }
-        let shown = found.iter().find(|sound| sound.name() == controls.params.name());
+        let name = controls.params.name();
+        let shown = found.iter().chain(sounds.all()).find(|sound| sound.name() == name);
         let compared = self.follow_comparison(ui, rows, controls);
         let may_compare = self.likeness.search.is_none();
         let outcome = self.details.show(ui, details, shown.map(Arc::as_ref), may_compare, &sounds, controls);

@@ -8,12 +8,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// How many sounds are shown in place of none.
+const NEAREST: usize = 3;
+/// What is said above them.
+pub(in crate::editor) const NONE: &str = "No sound has all of this. The nearest:";
+
 /// A category of sounds in the browser.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::editor) enum Category {
     #[default]
     All,
     Favourites,
+    Recent,
     Own,
     Kits,
     /// Those that were found to be like one.
@@ -25,7 +31,7 @@ impl Category {
     /// All categories in their order.
     pub(in crate::editor) fn all() -> impl Iterator<Item = Self> {
         let families = Family::ALL.iter().map(|family| Self::Family(*family));
-        [Self::All, Self::Favourites, Self::Own, Self::Kits].into_iter().chain(families)
+        [Self::All, Self::Favourites, Self::Recent, Self::Own, Self::Kits].into_iter().chain(families)
     }
 
     /// The name as shown to the user.
@@ -33,6 +39,7 @@ impl Category {
         match self {
             Self::All => "All".to_owned(),
             Self::Favourites => "Favourites".to_owned(),
+            Self::Recent => "Recent".to_owned(),
             Self::Own => "Your own".to_owned(),
             Self::Kits => "Kits".to_owned(),
             Self::Like => "Like another".to_owned(),
@@ -40,6 +47,16 @@ impl Category {
                 let name = family.name().replace('_', " ");
                 name[..1].to_uppercase() + &name[1..]
             }
+        }
+    }
+
+    /// What fills it; for those that are never empty, nothing.
+    pub(super) fn invitation(self) -> &'static str {
+        match self {
+            Self::Favourites => "None yet: a click on the star before a name keeps the sound here.",
+            Self::Recent => "None yet: the sounds that you load will be here, the last one first.",
+            Self::Own => "None yet: Save keeps the present sound here, Import brings in files.",
+            _ => "",
         }
     }
 }
@@ -57,6 +74,8 @@ pub(in crate::editor) struct Sounds {
     pub(in crate::editor) library: Option<Library>,
     catalogue: Catalogue,
     favourites: BTreeSet<String>,
+    /// The names of the sounds that were chosen last, the newest first.
+    recent: Vec<String>,
     /// The bodies of presets, by their places in memory.
     figures: BTreeMap<usize, Figure>,
     /// Files of the user that could not be read, and why.
@@ -80,7 +99,14 @@ impl Sounds {
             Playable::Kit(_) => None,
         };
         let figures = catalogue.sounds.iter().filter_map(figure).collect();
-        Self { library, catalogue, favourites, figures, broken }
+        let mut sounds = Self { library, catalogue, favourites, recent: Vec::new(), figures, broken };
+        sounds.read_recent();
+        sounds
+    }
+
+    /// Reads again which sounds were chosen last. A list that cannot be read is told where it is written.
+    pub(in crate::editor) fn read_recent(&mut self) {
+        self.recent = self.library.as_ref().and_then(|library| library.recent().ok()).unwrap_or_default();
     }
 
     /// The picture of a preset's body; none for a kit.
@@ -97,27 +123,31 @@ impl Sounds {
         self.catalogue.sounds.iter()
     }
 
-    /// The sounds of a category that contain all words; those with the words in their names come first, and those in `like` in the
-    /// order of these.
+    /// The sounds of a category that contain all words; those with the words in their names come first, recent ones in the order in
+    /// which they were chosen, and those in `like` in the order of these.
     pub(in crate::editor) fn find(&self, category: Category, words: &str, like: &[Place]) -> Vec<Arc<Listed>> {
-        let rank = |sound: &Listed| {
-            let own = place(sound)?;
-            like.iter().position(|place| *place == own)
+        let rank = |sound: &Listed| match category {
+            Category::Recent => self.recent.iter().position(|name| name == sound.name()),
+            Category::Like => place(sound).and_then(|own| like.iter().position(|place| *place == own)),
+            _ => None,
         };
         let is_on = |sound: &Listed| match category {
             Category::All => true,
             Category::Favourites => self.is_favourite(sound),
             Category::Own => sound.path.is_some(),
             Category::Kits => matches!(sound.playable, Playable::Kit(_)),
-            Category::Like => rank(sound).is_some(),
+            Category::Recent | Category::Like => rank(sound).is_some(),
             Category::Family(wanted) => sound.family() == Some(wanted),
         };
         let mut found = self.catalogue.find(words);
         found.retain(|sound| is_on(sound));
-        if category == Category::Like {
-            found.sort_by_key(|sound| rank(sound));
-        }
+        found.sort_by_key(|sound| rank(sound));
         found
+    }
+
+    /// The three sounds that are nearest to some words, among those that are wanted.
+    pub(in crate::editor) fn nearest(&self, words: &str, is_wanted: impl Fn(&Listed) -> bool) -> Vec<Arc<Listed>> {
+        self.catalogue.nearest(words).into_iter().filter(|sound| is_wanted(sound)).take(NEAREST).collect()
     }
 
     /// Adds a sound to the favourites or removes it. Returns a message if this cannot be stored.
@@ -157,6 +187,11 @@ mod tests {
         assert!(names(&sounds, Category::Family(Family::Kick), "marimba").is_empty());
         assert!(names(&sounds, Category::Kits, "").contains(&"Acoustic Kit".to_owned()));
         assert_eq!(names(&sounds, Category::Like, ""), ["Kick", "Marimba"]);
+        for name in ["Marimba", "My Glass", "Gone", "Kick"] {
+            library.note_recent(name).unwrap();
+        }
+        sounds.read_recent();
+        assert_eq!(names(&sounds, Category::Recent, ""), ["Kick", "My Glass", "Marimba"]);
         assert!(names(&sounds, Category::Favourites, "").is_empty());
         assert_eq!(sounds.set_favourite("Marimba", true), None);
         assert_eq!(names(&sounds, Category::Favourites, ""), ["Marimba"]);

@@ -31,6 +31,8 @@ pub(crate) struct History {
     /// The state before the action in progress.
     open: Option<State>,
     is_changed: bool,
+    /// The name of the sound that was chosen last, until somebody has looked.
+    chosen: Option<String>,
 }
 
 impl History {
@@ -56,8 +58,24 @@ impl History {
         self.begin(params);
         let name = playable.name().to_owned();
         files::load(playable, params, host);
+        self.chosen = Some(name.clone());
         self.end_step(name, false, false, params);
         self.is_changed = false;
+    }
+
+    /// Loads one of a kit's sounds alone, as it is heard now, as one step.
+    pub(crate) fn load_alone(&mut self, sound: usize, params: &SprungParams, host: &GuiContext) {
+        // Another kit may have been loaded in this moment.
+        if let Playable::Kit(heard) = params.state().into_sound()
+            && let Some((_, preset)) = heard.sounds.into_iter().nth(sound)
+        {
+            self.load(Playable::Preset(preset), params, host);
+        }
+    }
+
+    /// The name of the sound that was loaded since the last call.
+    pub(crate) fn take_chosen(&mut self) -> Option<String> {
+        self.chosen.take()
     }
 
     /// Like [`History::end`], after the sound was replaced by the other one of the two versions, which may be changed.

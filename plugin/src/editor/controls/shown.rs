@@ -98,6 +98,16 @@ impl Shown {
         }
     }
 
+    /// The place in a kit of the sound whose modes are shown.
+    pub(crate) fn sound(&self) -> usize {
+        self.sound
+    }
+
+    /// The name of the sound whose modes are shown.
+    pub(crate) fn sound_name(&self) -> &str {
+        self.kit().and_then(|kit| kit.sounds.get(self.sound)).map_or(self.playable.name(), |(_, preset)| &preset.name)
+    }
+
     /// The patch; for a kit, that of the sound whose modes are shown.
     pub(crate) fn patch(&self) -> &Patch {
         self.loaded.kit.sounds()[self.sound].patch()

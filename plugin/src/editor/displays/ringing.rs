@@ -97,6 +97,10 @@ impl Ringing {
                 painter.add(Shape::line(line, Stroke::new(1.2, colour)));
             }
         }
+        if (0..count).all(|mode| self.lines(mode, ceiling, area).is_empty()) {
+            let says = "Play a note: each mode is a line as it dies away.";
+            line(painter, area.shrink(4.0), Align2::CENTER_CENTER, says, SMALL, palette.muted);
+        }
         for line in selected.iter().flat_map(|mode| self.lines(*mode, ceiling, area)) {
             painter.add(Shape::line(line, Stroke::new(2.2, palette.text)));
         }

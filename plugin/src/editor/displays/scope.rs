@@ -44,10 +44,12 @@ fn waveform(painter: &Painter, rect: Rect, frames: &[f32; SCOPE_FRAMES], palette
         pos2(x, (rect.center().y - frame * scale).clamp(rect.top(), rect.bottom()))
     };
     painter.add(Shape::line(shown.iter().enumerate().map(point).collect(), Stroke::new(1.5, palette.accent)));
-    if peak > 1e-6 {
-        let text = format!("peak {:.1} dBFS", sprung::units::db_from_gain(f64::from(peak)));
-        line(painter, rect.shrink(4.0), Align2::RIGHT_TOP, &text, SMALL, palette.muted);
-    }
+    let text = if peak > 1e-6 {
+        format!("peak {:.1} dBFS", sprung::units::db_from_gain(f64::from(peak)))
+    } else {
+        "Play a note to see it.".to_owned()
+    };
+    line(painter, rect.shrink(4.0), Align2::RIGHT_TOP, &text, SMALL, palette.muted);
 }
 
 /// Draws the levels of bands of equal width in Hz on a logarithmic frequency axis.

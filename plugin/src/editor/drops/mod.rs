@@ -45,17 +45,10 @@ pub(super) fn take(path: &Path, library: Option<&Library>, controls: &mut Contro
     }
 }
 
-/// Whether a file is already in the user's folder.
-fn is_own(path: &Path, library: &Library) -> bool {
-    // Both may be reached by symbolic links.
-    let folder = path.parent().and_then(|folder| folder.canonicalize().ok());
-    folder.is_some() && folder == library.presets_folder().canonicalize().ok()
-}
-
 /// Loads a preset or kit. One from elsewhere is copied to the user's folder, if there is one.
 fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> Said {
     let read = files::read(path);
-    let imported = read.and_then(|sound| match library.filter(|library| !is_own(path, library)) {
+    let imported = read.and_then(|sound| match library.filter(|library| !library.has(path)) {
         Some(library) => {
             let (sound, place) = library.import(sound)?;
             let message = format!("imported as “{}”, {}", sound.name(), place.display());

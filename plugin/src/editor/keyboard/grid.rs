@@ -3,6 +3,7 @@
 use super::held_key::HeldKey;
 use crate::editor::controls::Controls;
 use crate::editor::theme::SMALL;
+use crate::editor::widgets::list::is_near;
 use crate::editor::widgets::text::{line, width};
 use crate::link::Link;
 use egui::style::ScrollAnimation;
@@ -89,7 +90,7 @@ impl KeyGrid {
                 if key == MIDDLE && !self.is_seen {
                     ui.scroll_to_rect_animation(place, Some(Align::Center), ScrollAnimation::none());
                 }
-                if !ui.is_rect_visible(place) {
+                if !is_near(ui, place) {
                     continue;
                 }
                 let shown = cell(key);

@@ -15,7 +15,7 @@ use crate::editor::widgets::text::{line, name_field, paragraph};
 use crate::loaded::Loaded;
 use egui::{Align2, Id, Key, Rect, TextEdit, Ui, UiBuilder, pos2, vec2};
 use sprung::params::Param;
-use sprung::preset::{Playable, Preset, with_ending};
+use sprung::preset::{Preset, with_ending};
 use sprung::sound::Pad;
 use sprung::sound::kit::{CHOKE_GROUPS, GAINS_DB, OUTPUTS};
 use sprung::units::{note_name, number_in_unit, parse_key};
@@ -95,13 +95,8 @@ impl Detail {
         if response.hovered() {
             *controls.hint = Hint::new("Load alone", "To change the sound itself: save it, and put it on a pad.");
         }
-        if response.clicked()
-            && let Playable::Kit(heard) = controls.params.state().into_sound()
-        {
-            // Another kit may have been loaded in this moment.
-            if let Some((_, preset)) = heard.sounds.into_iter().nth(now.sound) {
-                controls.history.load(Playable::Preset(preset), controls.params, controls.host);
-            }
+        if response.clicked() {
+            controls.history.load_alone(now.sound, controls.params, controls.host);
             return None;
         }
         let look = if kit.pads.len() > 1 { Look::Plain } else { Look::Disabled };

@@ -198,7 +198,10 @@ impl Face<'_> {
             let colour = if self.is_down { palette.on_accent } else { palette.modulation };
             line(painter, top, Align2::RIGHT_CENTER, &self.group.to_string(), SMALL, colour);
         }
-        let Some(pad) = self.pad else { return };
+        let Some(pad) = self.pad else {
+            line(painter, inside, Align2::CENTER_CENTER, "Drop a sound here", SMALL, muted);
+            return;
+        };
         let bar = inside.with_min_y(inside.bottom() - 3.0);
         let named = Rect::from_min_max(pos2(inside.left(), bar.top() - 17.0), pos2(inside.right(), bar.top() - 1.0));
         line(painter, named, Align2::LEFT_CENTER, self.name, TEXT, text);

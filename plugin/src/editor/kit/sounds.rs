@@ -2,11 +2,12 @@
 
 use super::pads::Carried;
 use crate::editor::body::face;
-use crate::editor::browser::sounds::{Category, Sounds};
+use crate::editor::browser::sounds::{Category, NONE, Sounds};
 use crate::editor::controls::{Controls, Hint};
-use crate::editor::theme::{TEXT, font};
-use crate::editor::widgets::text::{line, name_field};
-use egui::{Align2, Id, Rect, Role, ScrollArea, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, vec2};
+use crate::editor::theme::{SMALL, TEXT, font};
+use crate::editor::widgets::list;
+use crate::editor::widgets::text::{line, name_field, paragraph};
+use egui::{Align2, Id, Rect, Role, Sense, TextEdit, Ui, WidgetInfo, vec2};
 use sprung::preset::Playable;
 use sprung::preset::catalogue::Listed;
 use std::sync::Arc;
@@ -35,40 +36,35 @@ impl SoundList {
         let edit = TextEdit::singleline(&mut self.words).id(Id::unique("kit sounds")).hint_text("Sounds for pads");
         let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
         name_field(&response, "Search for sounds", &self.words);
+        let is_preset = |sound: &Listed| matches!(sound.playable, Playable::Preset(_));
         let mut found = sounds.find(Category::All, &self.words, &[]);
-        found.retain(|sound| matches!(sound.playable, Playable::Preset(_)));
+        found.retain(|sound| is_preset(sound));
+        let mut below = rect.with_min_y(field.bottom() + 6.0);
+        if found.is_empty() {
+            found = sounds.nearest(&self.words, is_preset);
+            below.min.y += paragraph(ui.painter(), below, NONE, SMALL, palette.muted) + 4.0;
+        }
         let mut clicked = None;
-        let mut inner =
-            ui.new_child(UiBuilder::new().id_salt("kit sounds").max_rect(rect.with_min_y(field.bottom() + 6.0)));
-        ScrollArea::vertical().id_salt("kit sounds").auto_shrink(false).show_rows(
-            &mut inner,
-            ROW - ui.spacing().item_spacing.y,
-            found.len(),
-            |ui, places| {
-                for sound in &found[places] {
-                    let size = vec2(ui.available_width(), ROW - ui.spacing().item_spacing.y);
-                    let (row, _) = ui.allocate_exact_size(size, Sense::hover());
-                    let id = Id::unique(("kit sound", sound.name(), &sound.path));
-                    let response = ui.interact(row, id, Sense::click_and_drag());
-                    response.widget_info(|| WidgetInfo::labeled(Role::ListItem, true, format!("Put {}", sound.name())));
-                    if response.hovered() || response.has_focus() {
-                        ui.painter().rect_filled(row, 3.0, palette.raised);
-                        *controls.hint =
-                            Hint::new(sound.name(), "Drag it to a pad; a click puts it on the chosen one.");
-                    }
-                    if response.clicked() {
-                        clicked = Some(sound.clone());
-                    }
-                    response.dnd_set_drag_payload(Carried::Sound(sound.clone()));
-                    let picture = row.with_max_x(row.left() + PICTURE);
-                    if let Some(figure) = sounds.figure(sound) {
-                        face::paint(ui.painter(), picture.shrink2(vec2(2.0, 3.0)), figure, &[], None, palette);
-                    }
-                    let name = row.with_min_x(picture.right() + 4.0);
-                    line(ui.painter(), name, Align2::LEFT_CENTER, sound.name(), TEXT, palette.text);
-                }
-            },
-        );
+        list::show(ui, below, "kit sounds", [rect.width(), ROW], (found.len(), None), |ui, place, cell| {
+            let (sound, row) = (&found[place], cell.with_max_y(cell.bottom() - ui.spacing().item_spacing.y));
+            let id = Id::unique(("kit sound", sound.name(), &sound.path));
+            let response = ui.interact(row, id, Sense::click_and_drag());
+            response.widget_info(|| WidgetInfo::labeled(Role::ListItem, true, format!("Put {}", sound.name())));
+            if response.hovered() || response.has_focus() {
+                ui.painter().rect_filled(row, 3.0, palette.raised);
+                *controls.hint = Hint::new(sound.name(), "Drag it to a pad; a click puts it on the chosen one.");
+            }
+            if response.clicked() {
+                clicked = Some(sound.clone());
+            }
+            response.dnd_set_drag_payload(Carried::Sound(sound.clone()));
+            let picture = row.with_max_x(row.left() + PICTURE);
+            if let Some(figure) = sounds.figure(sound) {
+                face::paint(ui.painter(), picture.shrink2(vec2(2.0, 3.0)), figure, &[], None, palette);
+            }
+            let name = row.with_min_x(picture.right() + 4.0);
+            line(ui.painter(), name, Align2::LEFT_CENTER, sound.name(), TEXT, palette.text);
+        });
         clicked
     }
 }

@@ -63,7 +63,9 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, contr
             places.push((*source, name, Rect::from_min_size(pos2(0.0, top), vec2(whole, TILE))));
             top += TILE + SPACE;
         }
-        let mut titles = vec![("Drag one to a knob, on any page", 0.0)];
+        let drags =
+            if shown.preset().is_some() { "Drag one to a knob, on any page" } else { "A kit’s sounds have them" };
+        let mut titles = vec![(drags, 0.0)];
         for (title, group) in [("Played", played.collect::<Vec<_>>()), ("Macros", macros.collect())] {
             titles.push((title, top));
             top += TITLE;

@@ -85,12 +85,16 @@ pub(super) fn show(ui: &Ui, rect: Rect, controls: &mut Controls) {
         controls.params.link().devices.request(request);
     }
     let mut below = inner.with_min_y(inner.top() + 2.0 * ROW);
-    let playing = if devices.playing.is_empty() { "…".to_owned() } else { format!("Playing on {}", devices.playing) };
+    let playing = match &*devices.playing {
+        "" => "Nothing plays yet: choose an output, or plug one in.".to_owned(),
+        playing => format!("Playing on {playing}"),
+    };
     line(ui.painter(), below.with_max_y(below.top() + 18.0), Align2::LEFT_CENTER, &playing, SMALL, palette.text);
     below.set_top(below.top() + 24.0);
     below.set_right(below.right().min(below.left() + COLUMNS[0] + COLUMNS[1] + 2.0 * GAP));
     if below.height() > 30.0 {
-        paragraph(ui.painter(), below, ABOUT, SMALL, palette.muted);
+        let keys = if devices.ports.is_empty() { NO_PORTS } else { "" };
+        paragraph(ui.painter(), below, &format!("{keys}{ABOUT}"), SMALL, palette.muted);
     }
 }
 
@@ -98,6 +102,7 @@ const OUTPUT: [&str; 2] = ["Output", "The sound device to play on"];
 const PORTS: [&str; 2] = ["MIDI in", "The MIDI ports to listen to; those that are plugged in later are found too"];
 const RATE: [&str; 2] = ["Sample rate", "Frames per second"];
 const BLOCK: [&str; 2] = ["Block", "Frames per block: fewer make keys answer sooner, more are safer"];
+const NO_PORTS: &str = "No MIDI port is listed: the computer’s keys play too, from Z and from Q on. ";
 const ABOUT: &str = "A choice holds at once and for the next time. If a device cannot be opened, the present one goes on. What \
                      sounds ends at a change. A device that disappears is waited for.";
 

@@ -27,6 +27,8 @@ pub(super) const PAGES: [&[&str]; 4] = [
 /// Width of a picture at the left of the knobs, with the gap after it; and the least of one beside the title.
 const PICTURE: f32 = 132.0;
 const SMALLEST: f32 = 50.0;
+/// Said below a picture of nothing.
+const CHOOSE: &str = "none: choose a type";
 /// How much of the brightness is left of a part that is off.
 const OFF: f32 = 0.6;
 
@@ -155,16 +157,20 @@ fn picture(painter: &Painter, rect: Rect, section: Section, figure: &Figure, con
         }
         Param::Space => {
             let (space, material) = (Param::Space.info(), Param::SpaceMaterial.info());
-            let is_room = Space::from_value(controls.value(space)) == Space::Room;
+            let kind = Space::from_value(controls.value(space));
+            let is_room = kind == Space::Room;
             // Of a floor without walls, the picture has no more above than is needed.
             let above = if is_room { 0.0 } else { 0.9 * rect.height() };
             let (frame, floor) = (rect.expand(6.0), rect.with_min_y(rect.top() - above).expand(6.0));
             let painter = painter.with_clip_rect(frame.intersect(painter.clip_rect()));
             stage::paint_floor(&painter, floor, rect, controls);
+            if kind == Space::None {
+                return Some(CHOOSE.to_owned());
+            }
             let of = if is_room { String::new() } else { format!(" of {}", controls.text(material)) };
             Some(format!("{}{of}", controls.text(space)))
         }
-        _ => curves::paint(painter, rect, section, controls),
+        _ => curves::paint(painter, rect, section, controls).or_else(|| Some(CHOOSE.to_owned())),
     }
 }
 

@@ -77,6 +77,10 @@ fn show_notes(painter: &Painter, rect: Rect, controls: &Controls) {
         }
     };
     row(rect.top() - 4.0, ["CHANNEL", "KEY", "PITCH", "VELOCITY", "AGE"], palette.muted);
+    if controls.notes.is_empty() {
+        let first = rect.with_min_y(rect.top() + ROW - 4.0).with_max_y(rect.top() + 2.0 * ROW - 4.0);
+        line(painter, first, Align2::LEFT_CENTER, "Play a note: it gets a row here.", SMALL, palette.muted);
+    }
     let rows = ((rect.height() - ROW) / ROW).max(0.0) as usize;
     for (place, note) in controls.notes.iter().take(rows).enumerate() {
         let texts = [

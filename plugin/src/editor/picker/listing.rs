@@ -25,24 +25,26 @@ pub(super) struct Listing {
     pub(super) entries: Vec<Entry>,
     /// The file, if the path was not that of a folder.
     pub(super) file: Option<PathBuf>,
-    /// Folders to go to from anywhere.
-    pub(super) places: Vec<Entry>,
 }
 
 /// Begins to read the folder at a path, or that of the file there: its folders, and its files with one of these endings.
 ///
 /// # Errors
 /// A message, if the system has no thread for it.
-pub(super) fn start(
-    path: PathBuf,
-    endings: Vec<&'static str>,
-    own: Option<PathBuf>,
-) -> std::result::Result<Background<Listing>, String> {
+pub(super) fn start(path: PathBuf, endings: Vec<&'static str>) -> std::result::Result<Background<Listing>, String> {
     let name = printable(&path.display().to_string()).into_owned();
-    Background::start(name, move |progress| list(path, &endings, own, progress))
+    Background::start(name, move |progress| list(path, &endings, progress))
 }
 
-fn list(path: PathBuf, endings: &[&str], own: Option<PathBuf>, progress: &Progress) -> Result<Listing> {
+/// Begins to look for folders to go to from anywhere, on a thread of its own: one of them may be on a network that does not answer.
+///
+/// # Errors
+/// As [`start`].
+pub(super) fn find_places(own: Option<PathBuf>) -> std::result::Result<Background<Vec<Entry>>, String> {
+    Background::start("places".to_owned(), move |_| Ok(places(own)))
+}
+
+fn list(path: PathBuf, endings: &[&str], progress: &Progress) -> Result<Listing> {
     let failed = |source| Error::io(path.display().to_string(), source);
     let is_file = fs::metadata(&path).map_err(failed)?.is_file();
     let folder = if is_file { path.parent().unwrap_or(&path).to_owned() } else { path.clone() };
@@ -60,7 +62,7 @@ fn list(path: PathBuf, endings: &[&str], own: Option<PathBuf>, progress: &Progre
         }
     }
     entries.sort_by_cached_key(|entry| (!entry.is_folder, entry.name.to_lowercase()));
-    Ok(Listing { folder, entries, file: is_file.then_some(path), places: places(own) })
+    Ok(Listing { folder, entries, file: is_file.then_some(path) })
 }
 
 fn entry_of(name: &str, path: PathBuf, is_folder: bool) -> Entry {
@@ -91,7 +93,7 @@ mod tests {
             fs::write(folder.path().join(name), "x").unwrap();
         }
         fs::create_dir(folder.path().join("scales")).unwrap();
-        let listed = |path: PathBuf| list(path, &["scl", "kbm"], None, &Progress::default());
+        let listed = |path: PathBuf| list(path, &["scl", "kbm"], &Progress::default());
         let listing = listed(folder.path().to_owned()).unwrap();
         let names: Vec<_> = listing.entries.iter().map(|entry| entry.name.as_str()).collect();
         assert_eq!((names, listing.file), (vec!["scales", "a.kbm", "b.SCL"], None));

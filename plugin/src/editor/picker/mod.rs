@@ -9,13 +9,14 @@ use super::controls::{Controls, Hint, Pick, Said};
 use super::drops;
 use super::theme::{GAP, PADDING, SMALL, TEXT, font};
 use super::widgets::buttons::{Look, button};
+use super::widgets::list;
 use super::widgets::progress::PAUSE;
 use super::widgets::text::{is_entered, line, name_field};
 use crate::editor::background::Background;
 use egui::{Align2, Id, Rect, Role, ScrollArea, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 use listing::{Entry, Listing};
 use sprung::preset::library::{Library, export};
-use sprung::text::slug;
+use sprung::text::file_stem;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -40,8 +41,11 @@ pub(super) enum Picked {
 pub(super) struct Picker {
     pick: Option<Pick>,
     listing: Listing,
-    /// The folder that is being read.
+    /// Folders to go to from anywhere.
+    places: Vec<Entry>,
+    /// The folder that is being read, and the search for places.
     work: Option<Background<Listing>>,
+    search: Option<Background<Vec<Entry>>>,
     chosen: BTreeSet<PathBuf>,
     /// The path that is typed, and the name of the file to save.
     path: String,
@@ -55,20 +59,21 @@ impl Picker {
     /// Prepares for being shown, in the folder that was shown last.
     pub(super) fn open(&mut self, pick: Pick, library: Option<&Library>) {
         if let Pick::Place(sound) = &pick {
-            self.name = format!("{}.toml", slug(sound.name()));
+            self.name = format!("{}.toml", file_stem(sound.name()));
         }
         self.pick = Some(pick);
+        self.search = listing::find_places(library.map(Library::presets_folder)).ok();
         let last = self.listing.folder.clone();
         let first = || std::env::home_dir().unwrap_or_else(|| PathBuf::from("/"));
-        self.go(if last.as_os_str().is_empty() { first() } else { last }, library);
+        self.go(if last.as_os_str().is_empty() { first() } else { last });
     }
 
     /// Ends the reading of a folder.
     pub(super) fn close(&mut self) {
-        self.work = None;
+        (self.work, self.search) = (None, None);
     }
 
-    fn go(&mut self, path: PathBuf, library: Option<&Library>) {
+    fn go(&mut self, path: PathBuf) {
         self.chosen.clear();
         (self.complaint, self.confirm) = (String::new(), None);
         let endings = match self.pick {
@@ -81,14 +86,20 @@ impl Picker {
             self.complaint = format!("{}: expected a whole path", path.display());
             return;
         }
-        match listing::start(path, endings, library.map(Library::presets_folder)) {
+        match listing::start(path, endings) {
             Ok(work) => self.work = Some(work),
             Err(message) => self.complaint = message,
         }
     }
 
-    /// Takes over the folder that has been read. Returns the file whose path was typed.
+    /// Takes over the folder that has been read, and the places. Returns the file whose path was typed.
     fn follow(&mut self, ui: &Ui) -> Option<PathBuf> {
+        if let Some(search) = &mut self.search {
+            ui.ctx().request_repaint_after(PAUSE);
+            if let Some(ended) = search.take() {
+                (self.search, self.places) = (None, ended.unwrap_or_default());
+            }
+        }
         let Some(ended) = self.work.as_mut()?.take() else {
             ui.ctx().request_repaint_after(PAUSE);
             return None;
@@ -170,7 +181,7 @@ impl Picker {
             let look = if is_there { Look::Main } else { Look::Disabled };
             let is_asked = button(ui, main, text, "Save in this folder", look, palette).clicked();
             if is_there && (is_asked || is_entered(&response)) {
-                match self.save() {
+                match self.save(library) {
                     Ok(message) => return Some(Picked::Saved(message)),
                     Err(message) => self.complaint = message,
                 }
@@ -195,7 +206,7 @@ impl Picker {
             }
         }
         if let Some(path) = to {
-            self.go(path, library);
+            self.go(path);
         }
         None
     }
@@ -206,7 +217,7 @@ impl Picker {
         let shown = ScrollArea::vertical().id_salt("places").auto_shrink(false).show(&mut inner, |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
             let mut clicked = None;
-            for Entry { name, path, .. } in &self.listing.places {
+            for Entry { name, path, .. } in &self.places {
                 let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW - 2.0), Sense::hover());
                 let look = if *path == self.listing.folder { Look::On } else { Look::Off };
                 if button(ui, row, name, &format!("Go to {name}"), look, controls.palette).clicked() {
@@ -229,58 +240,48 @@ impl Picker {
         let palette = controls.palette;
         let (mut entered, mut opened) = (None, None);
         if self.listing.entries.is_empty() {
-            let text = if self.work.is_some() { "Reading …" } else { "Nothing here that can be opened." };
+            let text = match (self.work.is_some(), saves) {
+                (true, _) => "Reading …",
+                (false, true) => "No sound here yet: Save puts this one here.",
+                (false, false) => "Nothing here that can be opened: go Up, or to a place at the left.",
+            };
             let place = rect.with_max_y(rect.top() + ROW);
             line(ui.painter(), place, Align2::LEFT_CENTER, text, TEXT, palette.muted);
         }
-        let columns = ((rect.width() / COLUMN) as usize).max(1);
-        let mut inner = ui.new_child(UiBuilder::new().id_salt("files").max_rect(rect));
-        ScrollArea::vertical().id_salt("files").auto_shrink(false).show(&mut inner, |ui| {
-            let rows = self.listing.entries.len().div_ceil(columns);
-            let width = ui.available_width() / columns as f32;
-            let size = vec2(ui.available_width(), rows as f32 * ROW);
-            let (area, _) = ui.allocate_exact_size(size, Sense::hover());
-            for (place, Entry { name, path, is_folder }) in self.listing.entries.iter().enumerate() {
-                let corner = area.min + vec2((place % columns) as f32 * width, (place / columns) as f32 * ROW);
-                let cell = Rect::from_min_size(corner, vec2(width, ROW)).shrink2(vec2(2.0, 1.0));
-                if !ui.is_rect_visible(cell) {
-                    continue;
-                }
-                let response = ui.interact(cell, Id::unique(("file", place)), Sense::click());
-                let is_chosen = self.chosen.contains(path);
-                let label = if *is_folder { format!("Folder {name}") } else { name.clone() };
-                response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_chosen, &label));
-                if is_chosen || response.hovered() || response.has_focus() {
-                    ui.painter().rect_filled(cell, 3.0, palette.raised);
-                }
-                let colour = match (is_chosen, is_folder) {
-                    (true, _) => palette.accent_text,
-                    (false, true) => palette.text,
-                    (false, false) => palette.muted,
-                };
-                let text = if *is_folder { format!("{name}/") } else { name.clone() };
-                line(ui.painter(), cell.shrink2(vec2(5.0, 0.0)), Align2::LEFT_CENTER, &text, TEXT, colour);
-                if !response.clicked() {
-                    continue;
-                }
-                let (adds, is_by_key) = ui.input(|input| (input.modifiers.command, !input.pointer.any_click()));
-                match (is_folder, saves) {
-                    // The second of two clicks is on what the first has brought there.
-                    (true, _) if response.double_clicked() => {}
-                    (true, _) => entered = Some(path.clone()),
-                    (false, true) => self.name.clone_from(name),
-                    (false, false) if response.double_clicked() && is_chosen || is_by_key => {
-                        opened = Some(path.clone())
+        list::show(ui, rect, "files", [COLUMN, ROW], (self.listing.entries.len(), None), |ui, place, cell| {
+            let (Entry { name, path, is_folder }, cell) = (&self.listing.entries[place], cell.shrink2(vec2(2.0, 1.0)));
+            let response = ui.interact(cell, Id::unique(("file", place)), Sense::click());
+            let is_chosen = self.chosen.contains(path);
+            let label = if *is_folder { format!("Folder {name}") } else { name.clone() };
+            response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_chosen, &label));
+            if is_chosen || response.hovered() || response.has_focus() {
+                ui.painter().rect_filled(cell, 3.0, palette.raised);
+            }
+            let colour = match (is_chosen, is_folder) {
+                (true, _) => palette.accent_text,
+                (false, true) => palette.text,
+                (false, false) => palette.muted,
+            };
+            let text = if *is_folder { format!("{name}/") } else { name.clone() };
+            line(ui.painter(), cell.shrink2(vec2(5.0, 0.0)), Align2::LEFT_CENTER, &text, TEXT, colour);
+            if !response.clicked() {
+                return;
+            }
+            let (adds, is_by_key) = ui.input(|input| (input.modifiers.command, !input.pointer.any_click()));
+            match (is_folder, saves) {
+                // The second of two clicks is on what the first has brought there.
+                (true, _) if response.double_clicked() => {}
+                (true, _) => entered = Some(path.clone()),
+                (false, true) => self.name.clone_from(name),
+                (false, false) if response.double_clicked() && is_chosen || is_by_key => opened = Some(path.clone()),
+                (false, false) => {
+                    if !adds {
+                        self.chosen.clear();
                     }
-                    (false, false) => {
-                        if !adds {
-                            self.chosen.clear();
-                        }
-                        if !is_chosen || !adds {
-                            self.chosen.insert(path.clone());
-                        } else {
-                            self.chosen.remove(path);
-                        }
+                    if !is_chosen || !adds {
+                        self.chosen.insert(path.clone());
+                    } else {
+                        self.chosen.remove(path);
                     }
                 }
             }
@@ -289,7 +290,7 @@ impl Picker {
     }
 
     /// Saves the sound in the folder. A file that is there is only replaced when it is asked for again.
-    fn save(&mut self) -> Said {
+    fn save(&mut self, library: Option<&Library>) -> Said {
         let Some(Pick::Place(sound)) = &self.pick else { return Err(String::new()) };
         let name = self.name.trim();
         let is_sound = name.to_lowercase().ends_with(".toml");
@@ -299,8 +300,8 @@ impl Picker {
         }
         let path = self.listing.folder.join(name);
         let replace = self.confirm.take().is_some_and(|confirmed| confirmed == path);
-        match export(sound, &path, replace) {
-            Ok(()) => Ok(format!("saved {}", path.display())),
+        match export(sound, &path, library, replace) {
+            Ok(path) => Ok(format!("saved {}", path.display())),
             Err(sprung::Error::Exists { path: there }) => {
                 self.confirm = Some(path);
                 Err(format!("{there} exists; Replace writes over it"))

@@ -5,6 +5,7 @@ mod movers;
 pub(super) mod stage;
 mod things;
 
+use crate::editor::body::offer::offer_alone;
 use crate::editor::body::view::{BodyView, velocity};
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
@@ -85,6 +86,8 @@ impl PlayPage {
                 self.audition.strike(shown.guide().home, VELOCITY, now, link);
             }
             message = changed.and_then(Result::err);
+        } else {
+            offer_alone(ui, inner.with_min_x(inner.right() - right), shown, controls);
         }
         let foot = inner.with_min_y(inner.bottom() - 22.0);
         let spaces = stage::show_spaces(ui, foot, controls);

@@ -2,17 +2,17 @@
 
 use crate::editor::body::edit::BodyEdit;
 use crate::editor::body::face;
+use crate::editor::body::offer::offer;
 use crate::editor::body::origin::OriginShown;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{GAP, RADIUS, SMALL};
-use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
-use crate::editor::widgets::text::{line, paragraph};
+use crate::editor::widgets::text::line;
 use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 use sprung::preset::Family;
 use sprung::sound::bodies::{Body, MATERIALS, Model};
-use sprung_picture::{Figure, Origin, model_name, suggested_model, tint};
+use sprung_picture::{Figure, Origin, model_name, tint};
 
 /// Models with tiles, and their names there. All others are in the list below.
 const TILES: [(&str, &str); 9] = [
@@ -29,6 +29,9 @@ const TILES: [(&str, &str); 9] = [
 /// Materials with a disc of their colour.
 const DISCS: [&str; 10] =
     ["bronze", "steel", "brass", "aluminium", "glass", "rosewood", "maple", "spruce", "porcelain", "nylon"];
+
+/// What a table of modes lacks here.
+const LACKS: &str = "Modes alone, without a material or a place to strike. Choose a shape:";
 
 /// Columns of tiles, and of discs.
 const COLUMNS: [usize; 2] = [3, 5];
@@ -63,7 +66,7 @@ impl Things {
             let below = rect.with_min_y(rect.top() + 28.0).with_max_y(rect.top() + 50.0);
             let offered = below.translate(vec2(0.0, 28.0));
             let other = match origin {
-                Origin::Table => offer(ui, below.union(offered), &origin, family, controls),
+                Origin::Table => offer(ui, below.union(offered), LACKS, (&origin, family), controls),
                 _ => material_field(ui, below, &origin, controls),
             };
             model.or(other)?
@@ -112,7 +115,7 @@ impl Things {
         next(2.0);
         line(ui.painter(), next(14.0), Align2::LEFT_CENTER, "What it is made of", SMALL, palette.muted);
         let Some(body) = origin.body() else {
-            return offer(ui, next(80.0), origin, family, controls).or(picked);
+            return offer(ui, next(80.0), LACKS, (origin, family), controls).or(picked);
         };
         let pitch = rect.width() / discs as f32;
         let rows = next(2.0 * pitch);
@@ -140,27 +143,6 @@ impl Things {
         }
         material_field(ui, next(20.0), origin, controls).or(picked)
     }
-}
-
-/// Says what a table of modes lacks, and offers to put the body in its place as which it is drawn.
-fn offer(
-    ui: &Ui,
-    rect: Rect,
-    origin: &Origin,
-    family: Option<Family>,
-    controls: &mut Controls,
-) -> Option<(Origin, String)> {
-    let palette = controls.palette;
-    let (id, model) = suggested_model(family);
-    let name = model_name(id);
-    let text = "Modes alone, without a material or a place to strike. Choose a shape:";
-    let height = paragraph(ui.painter(), rect, text, SMALL, palette.muted);
-    let place = rect.with_min_y(rect.top() + height + GAP / 2.0).with_max_y(rect.top() + height + GAP / 2.0 + 22.0);
-    let response = button(ui, place, &format!("Make it a {name}"), "Choose a shape", Look::Main, palette);
-    if response.hovered() {
-        *controls.hint = Hint::new("Choose a shape", format!("A {name} takes the place of the table of modes."));
-    }
-    response.clicked().then(|| (origin.with_model(false, Some(&model)), format!("model {name}")))
 }
 
 /// A picture to click, which is chosen or not.

@@ -50,7 +50,13 @@ pub(in crate::editor) fn show(
     palette.paint_panel(ui.painter(), rect);
     let inner = rect.shrink2(vec2(PADDING, 0.0));
     let title = Rect::from_min_size(inner.min + vec2(0.0, 2.0), vec2(inner.width(), TITLE_HEIGHT - 2.0));
-    line(ui, title, "WHAT MOVES WHAT", SMALL, palette.muted);
+    let left = line(ui, title, "WHAT MOVES WHAT", SMALL, palette.muted) + GAP;
+    let says = match (is_editable, patch.routes.iter().next()) {
+        (false, _) => "of the pad that was struck or chosen last: Load alone, on Kit, to change them",
+        (true, None) => "nothing yet: drag a source to a knob, or click a place below",
+        (true, Some(_)) => "",
+    };
+    line(ui, title.with_min_x(left).with_max_x(title.right() - TITLE_HEIGHT), says, SMALL, palette.muted);
     let visible = ((rect.height() - TITLE_HEIGHT - PADDING / 2.0) / ROW).max(1.0) as usize;
     // As many columns as the rows need; where fewer fit, the rows are scrolled.
     let most = ((inner.width() + 2.0 * GAP) / (LEAST + 2.0 * GAP)).max(1.0) as usize;

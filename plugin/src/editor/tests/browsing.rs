@@ -271,3 +271,41 @@ fn sounds_like_one_are_found_in_the_background() {
     assert_eq!(listed[0], "Marimba", "nothing is nearer to it than itself: {listed:?}");
     assert!(listed.iter().any(|name| name == "Resonator Marimba"), "{listed:?}");
 }
+
+#[test]
+fn the_sounds_that_were_chosen_last_are_listed_the_newest_first() {
+    let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    let library = Library::at(stage.folder.path());
+    let listed = |stage: &Stage| -> Vec<String> {
+        let nodes = stage.harness.query_all_by_role(Role::ListItem);
+        nodes.filter_map(|node| node.accesskit_node().label()).collect()
+    };
+    stage.button("Next sound");
+    let next = stage.params.name();
+    stage.button("Browse");
+    stage.button("Show Recent");
+    assert_eq!(listed(&stage), [next.as_str()], "chosen in the header");
+    stage.button("Show Bell");
+    for name in ["Church Bell", "Wine Glass"] {
+        stage.harness.get_by_role_and_label(Role::ListItem, name).click();
+        stage.harness.run_steps(3);
+    }
+    stage.button("Undo");
+    stage.button("Show Recent");
+    assert_eq!(listed(&stage), ["Wine Glass", "Church Bell", &next]);
+    // The order stays while arrows go through it.
+    for _ in 0..2 {
+        stage.harness.key_press(Key::ArrowDown);
+        stage.harness.run_steps(3);
+    }
+    assert_eq!((stage.params.name(), listed(&stage)[0].as_str()), (next.clone(), "Wine Glass"));
+    assert_eq!(library.recent().unwrap()[0], next);
+    stage.button("Browse");
+    stage.button("Browse");
+    assert_eq!(listed(&stage)[0], next);
+    // A list that is not understood is said, and stays.
+    std::fs::write(stage.folder.path().join("recent.txt"), b"\xff\n").unwrap();
+    stage.button("Next sound");
+    stage.harness.get_by_label_contains("recent.txt: ");
+    assert_eq!(std::fs::read(stage.folder.path().join("recent.txt")).unwrap(), b"\xff\n");
+}

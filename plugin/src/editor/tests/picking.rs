@@ -2,10 +2,12 @@
 
 use super::dropped::asset;
 use super::pictures::{Stage, stage};
-use crate::editor::theme::{SIZE, Theme};
+use super::reaching::page;
+use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use sprung::preset::Playable;
+use sprung::preset::library::Library;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -136,4 +138,75 @@ fn a_copy_is_saved_in_any_folder_and_written_over_only_if_asked_again() {
     assert!(saved.contains("Night Wood") && !saved.contains("author = \"Sprung\""));
     assert_eq!(stage.params.name(), "Marimba", "the sound itself is not saved");
     assert!(matches!(stage.params.state().playable, Playable::Preset(_)));
+}
+
+#[test]
+fn a_copy_among_ones_own_sounds_takes_the_place_of_the_one_of_its_name() {
+    let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    let library = Library::at(stage.folder.path());
+    let save = |stage: &mut Stage| {
+        stage.button("Save");
+        stage.type_text("Night Wood");
+    };
+    save(&mut stage);
+    stage.harness.key_press(Key::Enter);
+    stage.harness.run_steps(3);
+    for is_again in [false, true] {
+        save(&mut stage);
+        stage.button("Save in another folder");
+        stage.go(&library.presets_folder(), "night-wood.toml");
+        stage.until(|stage| stage.can("Save in this folder"));
+        stage.fill("Name of the file", "other");
+        stage.button("Save in this folder");
+        assert!(stage.says("Name of the file"), "it exists");
+        if is_again {
+            stage.button("Save in this folder");
+            assert!(stage.says("saved "));
+        } else {
+            stage.harness.key_press(Key::Escape);
+            stage.harness.run_steps(3);
+        }
+        assert_eq!(library.entries().len(), 1, "a name is that of one sound");
+    }
+}
+
+#[test]
+fn a_name_that_cannot_be_saved_is_refused_before_a_folder_is_looked_for() {
+    let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    stage.button("Save");
+    stage.button("Save in another folder");
+    assert!(stage.says("‘Marimba’ is a sound of the factory"));
+    let name = stage.harness.get_by_role_and_label(Role::TextInput, "Name to save under");
+    assert!(name.is_focused(), "it can be corrected");
+    stage.type_text("Гонг");
+    stage.button("Save in another folder");
+    let name = stage.harness.get_by_role_and_label(Role::TextInput, "Name of the file");
+    assert_eq!(name.value().as_deref(), Some("гонг.toml"));
+}
+
+#[test]
+fn tab_leads_to_files_that_are_not_on_screen() {
+    let (mut stage, folder) = (stage("Marimba", LEAST_SIZE, 1.0, Theme::Dark), tempfile::tempdir().unwrap());
+    for number in 100..300 {
+        std::fs::write(folder.path().join(format!("{number}.scl")), "x").unwrap();
+    }
+    stage.button("Browse");
+    stage.button("Import files");
+    stage.go(folder.path(), "100.scl");
+    stage.reach(Role::ListItem, page(), Modifiers::NONE);
+}
+
+#[test]
+fn places_are_looked_for_once_when_the_list_is_opened() {
+    let (mut stage, folder) = (stage("Marimba", SIZE, 1.0, Theme::Dark), folder());
+    stage.button("Browse");
+    stage.button("Import files");
+    stage.until(|stage| stage.says("Go to Home"));
+    std::fs::create_dir_all(stage.folder.path().join("presets")).unwrap();
+    stage.go(folder.path(), "mine.toml");
+    stage.harness.run_steps(20);
+    assert!(!stage.says("Go to Your sounds"), "they are not looked for again");
+    stage.button("Choose no file");
+    stage.button("Import files");
+    stage.until(|stage| stage.says("Go to Your sounds"));
 }

@@ -139,10 +139,10 @@ fn a_table_of_modes_says_what_it_lacks_and_becomes_the_body_that_is_offered() {
     for size in [SIZE, LEAST_SIZE] {
         let mut band = Band::of(facing(Face::Play, "Marimba", size, 1.0, Theme::Dark));
         assert!(band.stage.harness.query_by_label("Struck body").is_none(), "it knows no place");
-        band.click(Role::Button, "Choose a shape");
+        band.click(Role::Button, "Make it a marimba");
         assert_eq!((band.thing(), band.strikes()), (["marimba", "rosewood"], 1));
         band.rect("Struck body");
-        assert!(band.stage.harness.query_by_label("Choose a shape").is_none());
+        assert!(band.stage.harness.query_by_label("Make it a marimba").is_none());
         band.undo();
         assert_eq!(band.thing(), [""; 2]);
     }

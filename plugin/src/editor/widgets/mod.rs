@@ -4,6 +4,7 @@ pub(super) mod buttons;
 pub(super) mod carried;
 pub(super) mod choice;
 pub(super) mod knob;
+pub(super) mod list;
 pub(super) mod number;
 pub(super) mod progress;
 pub(super) mod text;

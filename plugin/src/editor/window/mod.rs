@@ -3,6 +3,7 @@
 mod header;
 mod host;
 mod meter;
+mod reach;
 mod requests;
 mod status;
 mod variation;
@@ -37,6 +38,7 @@ use header::{Header, Request};
 use meter::Meter;
 use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
+use reach::Reach;
 use sprung::preset::library::Library;
 use status::{Load, StatusLine};
 use std::collections::BTreeSet;
@@ -72,6 +74,7 @@ pub(super) struct Window {
     locked: BTreeSet<&'static str>,
     seed: u64,
     focus: Focus,
+    reach: Reach,
     face: Face,
     play: PlayPage,
     pages: Pages,
@@ -121,6 +124,7 @@ impl Window {
             // A different seed in each window.
             seed: RandomState::new().hash_one(0_u8),
             focus: Focus::default(),
+            reach: Reach::default(),
             face: Face::default(),
             play: PlayPage::default(),
             pages: Pages::default(),
@@ -168,6 +172,7 @@ impl Window {
             view.theme.apply(ui.ctx());
         }
         let palette = view.theme.palette();
+        self.reach.follow(ui);
         self.shown.refresh(&params);
         self.follow_loads();
         let window = ui.ctx().content_rect();
@@ -250,7 +255,11 @@ impl Window {
                     self.over = None;
                     match done {
                         Picked::Files(files) => picked = files,
-                        Picked::Saved(message) => self.message = Ok(message),
+                        Picked::Saved(message) => {
+                            self.message = Ok(message);
+                            // It may be one of the user's sounds.
+                            self.browser.forget();
+                        }
                         Picked::Nothing => self.over = self.under,
                     }
                 }
@@ -339,6 +348,11 @@ impl Window {
         let search = (searches && self.over != Some(Over::Browser)).then_some(Request::Browse);
         if let Some(request) = request.or(search) {
             self.carry_out(request, ui, host);
+        }
+        if let (Some(name), Some(library)) = (self.history.take_chosen(), self.browser.library())
+            && let Err(error) = library.note_recent(&name)
+        {
+            self.message = Err(error.to_string());
         }
     }
 

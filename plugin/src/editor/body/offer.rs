@@ -1,0 +1,50 @@
+//! Buttons where there is no body to change: one puts a body in the place of a table of modes, one takes a sound out of a kit.
+
+use crate::editor::controls::shown::Shown;
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::theme::{GAP, SMALL};
+use crate::editor::widgets::buttons::{Look, button};
+use crate::editor::widgets::text::paragraph;
+use egui::{Rect, Ui};
+use sprung::preset::Family;
+use sprung_picture::{Origin, model_name, suggested_model};
+
+/// Widest button.
+const WIDEST: f32 = 188.0;
+
+/// Says what a table of modes lacks, and offers to put the body in its place as which it is drawn.
+pub(crate) fn offer(
+    ui: &Ui,
+    rect: Rect,
+    text: &str,
+    (origin, family): (&Origin, Option<Family>),
+    controls: &mut Controls,
+) -> Option<(Origin, String)> {
+    let (id, model) = suggested_model(family);
+    let name = model_name(id);
+    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    let deed = format!("Make it {article} {name}");
+    let is_wanted = say(ui, rect, text, [&deed, "It takes the place of the table of modes."], controls);
+    is_wanted.then(|| (origin.with_model(false, Some(&model)), format!("model {name}")))
+}
+
+/// Says that a kit's sounds have bodies of their own, and offers to load the one that is shown.
+pub(crate) fn offer_alone(ui: &Ui, rect: Rect, shown: &Shown, controls: &mut Controls) {
+    let text = "The sounds of a kit have bodies of their own. Load one of them to change its body.";
+    let deed = format!("Load {} alone", shown.sound_name());
+    if say(ui, rect, text, [&deed, "To change the sound itself: save it, and put it on a pad."], controls) {
+        controls.history.load_alone(shown.sound(), controls.params, controls.host);
+    }
+}
+
+/// Shows a text with a button below it. Returns whether that is clicked.
+fn say(ui: &Ui, rect: Rect, text: &str, [deed, help]: [&str; 2], controls: &mut Controls) -> bool {
+    let palette = controls.palette;
+    let top = rect.top() + paragraph(ui.painter(), rect, text, SMALL, palette.muted) + GAP / 2.0;
+    let place = rect.with_min_y(top).with_max_y(top + 22.0).with_max_x(rect.right().min(rect.left() + WIDEST));
+    let response = button(ui, place, deed, deed, Look::Main, palette);
+    if response.hovered() {
+        *controls.hint = Hint::new(deed, help);
+    }
+    response.clicked()
+}

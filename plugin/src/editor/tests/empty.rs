@@ -1,0 +1,129 @@
+//! What stands where there is nothing yet: no page is empty.
+
+use super::pictures::{Stage, facing, stage};
+use crate::devices::Devices;
+use crate::editor::theme::{SIZE, Theme};
+use crate::editor::window::Face;
+use crate::state::State;
+use egui::epaint::Shape;
+use egui::{Key, Role};
+use egui_kittest::kittest::Queryable as _;
+use sprung::patch::routes::Routes;
+use sprung::preset::{Playable, Preset};
+use std::sync::atomic::Ordering::Relaxed;
+
+impl Stage {
+    /// Whether a text is painted, of which these are the first words.
+    fn paints(&self, words: &str) -> bool {
+        fn is_in(shape: &Shape, words: &str) -> bool {
+            match shape {
+                Shape::Vec(shapes) => shapes.iter().any(|shape| is_in(shape, words)),
+                Shape::Text(text) => text.galley.text().starts_with(words),
+                _ => false,
+            }
+        }
+        self.harness.output().shapes.iter().any(|clipped| is_in(&clipped.shape, words))
+    }
+
+    fn tab(&mut self, name: &str) {
+        self.harness.get_by_role_and_label(Role::Tab, name).click();
+        self.harness.run_steps(3);
+    }
+
+    fn listed(&self) -> usize {
+        self.harness.query_all_by_role(Role::ListItem).count()
+    }
+}
+
+#[test]
+fn a_sound_that_nothing_moves_says_what_can_be_dragged() {
+    let preset = Preset::find("init").unwrap().clone();
+    let mut still = preset.clone();
+    still.patch.routes = Routes::NONE;
+    for (preset, is_still) in [(preset, false), (still, true)] {
+        let mut stage = facing(Face::Play, "init", SIZE, 1.0, Theme::Dark);
+        let State { seed, view, .. } = stage.params.state();
+        stage.params.load(State::new(Playable::Preset(preset), seed, view).into());
+        stage.harness.run_steps(3);
+        assert_eq!(stage.paints("Wheel and pressure move nothing yet"), is_still);
+        stage.tab("Motion");
+        assert_eq!(stage.paints("nothing yet: drag a source to a knob"), is_still);
+    }
+}
+
+#[test]
+fn a_search_without_a_result_shows_the_nearest_three_which_can_be_loaded() {
+    let mut stage = stage("Kick", SIZE, 1.0, Theme::Dark);
+    stage.button("Browse");
+    stage.type_text("marimbba");
+    assert!(stage.paints("No sound has all of this. The nearest:"));
+    assert_eq!(stage.listed(), 3);
+    stage.harness.key_press(Key::ArrowDown);
+    stage.harness.run_steps(3);
+    assert_eq!(stage.params.name(), "Marimba");
+    for (category, says) in [("Favourites", "None yet: a click on the star"), ("Your own", "None yet: Save keeps")] {
+        stage.button(&format!("Show {category}"));
+        assert!(stage.paints(says) && stage.listed() == 0, "{category}");
+    }
+    let mut stage = facing(Face::Kit, "Acoustic Kit", SIZE, 1.0, Theme::Dark);
+    stage.harness.get_by_label("Search for sounds").click();
+    stage.harness.run_steps(2);
+    stage.type_text("acoustik");
+    assert!(stage.paints("No sound has all of this.") && stage.listed() == 3, "presets alone");
+}
+
+#[test]
+fn a_sound_without_a_file_is_offered_to_be_kept() {
+    let mut stage = stage("init", SIZE, 1.0, Theme::Dark);
+    stage.button("Browse");
+    assert!(!stage.paints("macros:") && !stage.paints("In no file"), "it has none");
+    stage.button("Show Kick");
+    assert!(stage.paints("One mass and a bare impulse"), "the loaded sound is told of, whatever is listed");
+    stage.params.rename("Something New".to_owned());
+    stage.harness.run_steps(3);
+    assert!(stage.paints("In no file of yours yet"));
+}
+
+#[test]
+fn what_has_no_body_to_change_is_offered_one() {
+    let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    stage.tab("Model");
+    stage.button("Make it a marimba");
+    assert!(stage.harness.query_by_role_and_label(Role::SpinButton, "Frequency").is_some(), "it has numbers");
+    for face in [Face::Play, Face::Sound] {
+        let mut stage = facing(face, "Acoustic Kit", SIZE, 1.0, Theme::Dark);
+        if face == Face::Sound {
+            stage.tab("Model");
+        }
+        stage.button("Load High Q alone");
+        assert_eq!(stage.params.name(), "High Q");
+    }
+}
+
+#[test]
+fn pictures_of_nothing_and_empty_places_say_what_fills_them() {
+    let mut stage = stage("init", SIZE, 1.0, Theme::Dark);
+    stage.host.is_alone.store(true, Relaxed);
+    stage.harness.run_steps(3);
+    for (tab, says) in [
+        ("Scope", "Play a note to see it"),
+        ("Ringing", "Play a note: each mode is a line"),
+        ("Voices", "Play a note: it gets a row"),
+        ("Soundbox", "none: choose a type"),
+        ("Space", "none: choose a type"),
+        ("Devices", "Nothing plays yet: choose an output"),
+        ("Devices", "No MIDI port is listed"),
+    ] {
+        stage.tab(tab);
+        assert!(stage.paints(says), "{tab}: {says}");
+    }
+    let ports = vec!["Keys".to_owned()];
+    stage.params.link().devices.show(Devices { ports, ..Devices::default() });
+    stage.harness.run_steps(3);
+    assert!(!stage.paints("No MIDI port is listed"));
+    let mut stage = facing(Face::Kit, "Kick", SIZE, 1.0, Theme::Dark);
+    stage.button("Make a kit of this sound");
+    assert!(stage.paints("Drop a sound here"));
+    stage.tab("Motion");
+    assert!(stage.paints("of the pad that was struck or chosen last"));
+}

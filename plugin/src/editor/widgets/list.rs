@@ -1,0 +1,36 @@
+//! Long lists: only the rows are made that can be seen or reached.
+
+use egui::{Rect, ScrollArea, Sense, Ui, UiBuilder, vec2};
+
+/// Whether a row can be seen, or is just beyond the edge: Tab leads there, and then it is scrolled to.
+pub(crate) fn is_near(ui: &Ui, row: Rect) -> bool {
+    ui.is_rect_visible(row.expand(4.0 * row.height()))
+}
+
+/// Shows the cells of a list by rows, in as many columns of this width as there is room for; `to` is one to scroll to.
+pub(crate) fn show(
+    ui: &mut Ui,
+    rect: Rect,
+    name: &'static str,
+    [width, height]: [f32; 2],
+    (count, to): (usize, Option<usize>),
+    mut cell: impl FnMut(&Ui, usize, Rect),
+) {
+    let columns = ((rect.width() / width) as usize).max(1);
+    let mut inner = ui.new_child(UiBuilder::new().id_salt(name).max_rect(rect));
+    ScrollArea::vertical().id_salt(name).auto_shrink(false).show(&mut inner, |ui| {
+        let size = vec2(ui.available_width() / columns as f32, height);
+        let whole = vec2(ui.available_width(), count.div_ceil(columns) as f32 * height);
+        let (area, _) = ui.allocate_exact_size(whole, Sense::hover());
+        for place in 0..count {
+            let corner = area.min + vec2((place % columns) as f32, (place / columns) as f32) * size;
+            let at = Rect::from_min_size(corner, size);
+            if to == Some(place) {
+                ui.scroll_to_rect(at.expand(height), None);
+            }
+            if is_near(ui, at) {
+                cell(ui, place, at);
+            }
+        }
+    });
+}
