@@ -158,7 +158,6 @@ fn improved(
     listener.choose_oscillators(&mut draft)?;
     listener.choose_hardness(&mut draft)?;
     listener.shape_noise(&mut draft)?;
-    listener.choose_sweep(&mut draft)?;
     let distance = listener.correct(&mut draft, ROUNDS)?;
     listener.tell(part(1.0))?;
     Ok((draft, distance))

@@ -5,7 +5,6 @@ use super::correct::{by_bands, by_moments};
 use super::draft::Draft;
 use super::movement::Swell;
 use super::prepared::Prepared;
-use super::simplex;
 use crate::analysis::log_mel::{HOP, LogMel, MelBands, WINDOW};
 use crate::error::{Error, Result};
 use crate::params::Param;
@@ -23,13 +22,11 @@ const FALLS: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 /// Distance in dB below which nothing nearer is looked for.
 pub(super) const NEAR_DB: f64 = 0.4;
 /// Windows of the attack: 150 ms.
-pub(super) const ATTACK: usize = 26;
+const ATTACK: usize = 26;
 /// Frames by which the onset of what is played may be late.
 const LATE: usize = 1024;
 /// Factors of the depths of oscillators that are tried, one after the other.
 const DEPTHS: [f64; 4] = [1.4, 1.2, 1.1, 0.9];
-/// Steps of the search for a sweep.
-const SIMPLEX_STEPS: usize = 36;
 
 /// Plays drafts and measures how far they are from a recording. Reports the progress each time.
 pub(super) struct Listener<'a> {
@@ -180,19 +177,6 @@ impl<'a> Listener<'a> {
         if self.distance(&without, usize::MAX)? < nearest {
             *draft = without;
         }
-        Ok(())
-    }
-
-    /// Moves the sweep to where the distance is least.
-    pub(super) fn choose_sweep(&mut self, draft: &mut Draft) -> Result<()> {
-        if draft.sweep.semitones == 0.0 {
-            return Ok(());
-        }
-        let start = draft.sweep;
-        let (place, _) = simplex::least(SIMPLEX_STEPS, |place| {
-            self.distance(&Draft { sweep: start.moved(place), ..draft.clone() }, usize::MAX)
-        })?;
-        draft.sweep = start.moved(place);
         Ok(())
     }
 

@@ -1,8 +1,8 @@
-//! Shapes the noise of a draft by ear: its length, rise and fall, and its bursts.
+//! Shapes the noise of a draft by ear: its length, rise and fall.
 
 use super::correct::by_levels;
 use super::draft::{Draft, Noise};
-use super::refine::{ATTACK, Listener};
+use super::refine::Listener;
 use crate::error::Result;
 use crate::params::NoiseDecay;
 
@@ -21,11 +21,6 @@ const LEAST_RISE: f64 = 0.002;
 const EXPONENTIAL: f64 = 2.76;
 /// Corrections of levels at a time.
 const LEVELLINGS: usize = 3;
-/// Bursts that follow each other, and seconds between them, that are tried.
-const HITS: [u8; 3] = [2, 3, 4];
-const SPACINGS: [f64; 4] = [0.008, 0.0105, 0.0135, 0.018];
-/// Reduction of the attack's distance in dB for which several bursts are kept.
-const WORTH_HITS: f64 = 0.3;
 
 /// A shorter and a longer noise.
 fn lengthened(noise: Noise, step: f64) -> [Noise; 2] {
@@ -68,19 +63,7 @@ impl Listener<'_> {
         }
         let noise = draft.noise;
         let rises: Vec<Draft> = RISES.map(|attack| with(draft, Noise { attack, ..noise })).into();
-        self.best(draft, usize::MAX, rises)?;
-        let noise = draft.noise;
-        if noise.hits > 1 {
-            // A row that was counted has more bursts than those that are tried.
-            return Ok(());
-        }
-        let several = HITS.map(|hits| SPACINGS.map(|spacing| with(draft, Noise { hits, spacing, ..noise })));
-        let mut other = draft.clone();
-        self.best(&mut other, ATTACK, several.into_iter().flatten())?;
-        if self.distance(&other, ATTACK)? < self.distance(draft, ATTACK)? - WORTH_HITS {
-            *draft = other;
-        }
-        Ok(())
+        self.best(draft, usize::MAX, rises)
     }
 
     /// Corrects the levels alone of the modes of a draft, and returns its distance.
