@@ -52,7 +52,6 @@ impl Listener<'_> {
         if draft.partials.iter().all(|partial| partial.struck) {
             return Ok(());
         }
-        let with = |draft: &Draft, noise| Draft { noise, ..draft.clone() };
         let noise = draft.noise;
         // The decays of the modes were measured together with the burst, so they are corrected for each burst.
         let bursts = LENGTHS.map(|seconds| Noise { seconds, ..noise });
@@ -62,7 +61,7 @@ impl Listener<'_> {
             self.best_corrected(draft, lengthened(draft.noise, NEARER))?;
         }
         let noise = draft.noise;
-        let rises: Vec<Draft> = RISES.map(|attack| with(draft, Noise { attack, ..noise })).into();
+        let rises = RISES.map(|attack| Draft { noise: Noise { attack, ..noise }, ..draft.clone() });
         self.best(draft, usize::MAX, rises)
     }
 

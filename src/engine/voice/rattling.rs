@@ -97,12 +97,15 @@ impl Rattling {
         let mut weights = strengths(modes, frequency, place);
         let [levels, ..] = values.tilted_levels();
         // A mode's level is that of an impulse at its antinode.
-        let push = |m: usize| levels[m] * sin(PI * place * f64::from(modes[m].ratio));
+        let mut pushes = [0.0; MAX_MODES];
+        for ((push, mode), level) in pushes.iter_mut().zip(modes).zip(levels) {
+            *push = level * sin(PI * place * f64::from(mode.ratio));
+        }
         if self.has_bloomed {
-            weigh_as_heard(&mut weights[..modes.len().min(MAX_MODES)], push);
+            weigh_as_heard(&mut weights[..MAX_MODES], &pushes);
         }
         let struck = |m: usize| if self.has_bloomed { 1.0 } else { f64::from(modes[m].strike) };
-        let compliance = bank.set_touched(1, |m, _| [push(m), weights[m] * struck(m).max(HEARD_ONLY)]).iter().sum();
+        let compliance = bank.set_touched(1, |m, _| [pushes[m], weights[m] * struck(m).max(HEARD_ONLY)]).iter().sum();
         // Speed and swing of the point after a full strike, from modes of any phases.
         let (mut speeds, mut swings) = (0.0, 0.0);
         for (m, mode) in modes.iter().enumerate().take(MAX_MODES) {
@@ -144,8 +147,8 @@ impl Rattling {
 
 /// Gives all modes the same energy for the same level, as the bloom counts it, in place of that of their swing; the body as a whole gives
 /// way as before. What one of them moved to modes that are heavy for the other would come back louder, each time anew.
-fn weigh_as_heard(weights: &mut [f64], push: impl Fn(usize) -> f64) {
-    let [before, after] = [weights.iter().sum(), (0..weights.len()).map(|m| push(m) * push(m)).sum::<f64>()];
+fn weigh_as_heard(weights: &mut [f64], pushes: &[f64]) {
+    let [before, after] = [weights.iter().sum(), pushes.iter().map(|push| push * push).sum::<f64>()];
     let share = if after > 0.0 { before / after } else { 0.0 };
-    weights.iter_mut().enumerate().for_each(|(m, weight)| *weight = share * push(m) * push(m));
+    weights.iter_mut().zip(pushes).for_each(|(weight, push)| *weight = share * push * push);
 }

@@ -8,8 +8,9 @@ use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::modes::table::replace;
 use crate::editor::theme::RADIUS;
+use crate::editor::widgets::outline;
 use crate::loaded::Loaded;
-use egui::{CursorIcon, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
+use egui::{CursorIcon, Id, Rect, Role, Sense, Ui, WidgetInfo};
 use sprung::params::Param;
 use sprung::sound::bodies::Point;
 use sprung_picture::{BodyShape, Form, Origin, REACH, Swing};
@@ -119,9 +120,7 @@ impl BodyView {
                 self.drag = Some(Drag { point, written: None, velocity, next: now, loaded });
             }
         }
-        if response.has_focus() {
-            ui.painter().rect_stroke(rect, RADIUS, Stroke::new(1.5, controls.palette.text), StrokeKind::Inside);
-        }
+        outline(ui, &response, rect, RADIUS, controls.palette);
         let Some(drag) = &mut self.drag else {
             // Beside the body, or by the keyboard.
             if response.clicked() {

@@ -3,9 +3,9 @@
 use super::sounds::Sounds;
 use crate::editor::body::face;
 use crate::editor::theme::{Palette, SMALL, TEXT};
-use crate::editor::widgets::list;
 use crate::editor::widgets::text::line;
-use egui::{Align2, Id, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2};
+use crate::editor::widgets::{list, outline};
+use egui::{Align2, Id, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 use sprung::preset::catalogue::Listed;
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -55,7 +55,7 @@ impl List<'_> {
             if is_on || response.hovered() {
                 ui.painter().rect_filled(cell, 3.0, palette.raised);
             }
-            outline(ui, &response, palette);
+            outline(ui, &response, response.rect, 3, palette);
             if show_star(ui, star, place, sound.name(), sounds.is_favourite(sound), palette) {
                 clicked.star = Some(place);
             }
@@ -80,18 +80,11 @@ pub(super) fn row(place: usize) -> Id {
     Id::unique(("sound", place))
 }
 
-/// Shows what has the focus.
-fn outline(ui: &Ui, response: &Response, palette: &Palette) {
-    if response.has_focus() {
-        ui.painter().rect_stroke(response.rect, 3.0, Stroke::new(1.5, palette.text), StrokeKind::Inside);
-    }
-}
-
 /// A star that is filled for favourites. Returns whether it was clicked.
 fn show_star(ui: &Ui, rect: Rect, place: usize, name: &str, is_on: bool, palette: &Palette) -> bool {
     let response = ui.interact(rect, Id::unique(("star", place)), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_on, format!("Favourite {name}")));
-    outline(ui, &response, palette);
+    outline(ui, &response, response.rect, 3, palette);
     let corner = |number: usize| {
         let radius = if number.is_multiple_of(2) { 6.0 } else { 2.6 };
         rect.center() + radius * Vec2::angled((number as f32 / 10.0 - 0.25) * TAU)

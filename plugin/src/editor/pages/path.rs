@@ -4,7 +4,7 @@ use crate::editor::controls::{Controls, Hint};
 use crate::editor::lamps::{self, Lamp};
 use crate::editor::routes::carry;
 use crate::editor::theme::{GAP, RADIUS, SMALL, TEXT};
-use crate::editor::widgets::text;
+use crate::editor::widgets::{outline, text};
 use egui::{Align2, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
 /// A part: its name, which is that of its section if it has one, and the page that shows it.
@@ -110,9 +110,7 @@ fn show_part(
     if is_selected {
         ui.painter().rect(rect, RADIUS, palette.raised, Stroke::new(1.0, palette.accent), StrokeKind::Inside);
     }
-    if response.has_focus() {
-        ui.painter().rect_stroke(rect, RADIUS, Stroke::new(1.5, palette.text), StrokeKind::Inside);
-    }
+    outline(ui, &response, rect, RADIUS, palette);
     let is_on = lamp.is_none_or(|lamp| lamp.is_on(controls));
     let mut is_hovered = response.hovered();
     if let Some(lamp) = lamp {

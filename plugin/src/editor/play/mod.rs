@@ -12,10 +12,10 @@ use crate::editor::controls::shown::Shown;
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::routes::Ring;
 use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, RADIUS, SMALL, TITLE_HEIGHT};
-use crate::editor::widgets::knob;
 use crate::editor::widgets::text::line;
+use crate::editor::widgets::{knob, outline};
 use crate::link::Link;
-use egui::{Align2, Rect, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, vec2};
+use egui::{Align2, Rect, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use sprung::params::{PARAMS, Param, ParamInfo};
 
 /// The smallest height of a page with titles and tiles: 330 for the tiles of bodies and materials, and the rest for knobs and gaps.
@@ -107,9 +107,7 @@ impl PlayPage {
         let response = ui.interact(middle, egui::Id::unique("stage"), Sense::click());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Strike"));
         let is_struck = response.clicked();
-        if response.has_focus() {
-            ui.painter().rect_stroke(middle, RADIUS, Stroke::new(1.5, palette.text), StrokeKind::Inside);
-        }
+        outline(ui, &response, middle, RADIUS, palette);
         let caption = self.body.show(ui, rect, shown, energies, &mut self.audition, controls);
         if is_struck {
             let now = ui.input(|input| input.time);

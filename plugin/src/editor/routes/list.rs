@@ -3,8 +3,8 @@
 use super::{Ring, button, goes_both_ways, name, source_name};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{GAP, PADDING, RADIUS, SMALL, TEXT, TITLE_HEIGHT};
-use crate::editor::widgets::{knob, text};
-use egui::{Align2, Rect, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, vec2};
+use crate::editor::widgets::{knob, outline, text};
+use egui::{Align2, Rect, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use sprung::patch::Patch;
 use sprung::patch::routes::{MAX_ROUTES, Response, Route, Source, amount_param};
 use sprung::preset::Guide;
@@ -86,10 +86,7 @@ pub(in crate::editor) fn show(
                     let name = name(place, &patch.routes, guide);
                     *controls.hint = Hint::new(name, "Click: source, destination, multiplier and response.");
                 }
-                if response.has_focus() {
-                    let edge = Stroke::new(1.5, palette.text);
-                    ui.painter().rect_stroke(sentence.expand2(vec2(4.0, 0.0)), RADIUS, edge, StrokeKind::Inside);
-                }
+                outline(ui, &response, sentence.expand2(vec2(4.0, 0.0)), RADIUS, palette);
             }
             match patch.routes.get(place) {
                 None => {

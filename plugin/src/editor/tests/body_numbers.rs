@@ -17,11 +17,6 @@ impl Stage {
         Origin::of(&preset.patch.modes)
     }
 
-    fn open_page(&mut self, name: &str) {
-        self.harness.get_by_role_and_label(Role::Tab, name).click();
-        self.harness.run_steps(3);
-    }
-
     /// Picks a name from the list that a field opens.
     fn pick(&mut self, field: &str, name: &str) {
         self.harness.get_by_role_and_label(Role::ComboBox, field).click();
@@ -45,7 +40,7 @@ fn pictures_of_the_page_are_as_accepted() {
         ("Guitar", "Joint of the bodies", LEAST_SIZE, Theme::Dark, "model-joint-least"),
     ] {
         let mut stage = stage(sound, size, 1.0, theme);
-        stage.open_page("Model");
+        stage.tab("Model");
         stage.button(part);
         compare_page(name, &mut stage.harness);
     }
@@ -86,7 +81,7 @@ fn a_number_is_dragged_heard_and_undone_as_one_step() {
 #[test]
 fn a_second_body_is_joined_changed_and_taken_away() {
     let mut stage = stage("init", SIZE, 1.0, Theme::Dark);
-    stage.open_page("Model");
+    stage.tab("Model");
     stage.pick("Model of the body", "free bar");
     let alone = stage.origin();
     assert_eq!(alone.body().map(|body| body.model.id()), Some("free_bar"));
@@ -107,7 +102,7 @@ fn a_second_body_is_joined_changed_and_taken_away() {
 fn bodies_with_too_many_modes_are_refused_and_the_sound_stays() {
     let mut stage = stage("Guitar", SIZE, 1.0, Theme::Dark);
     let before = stage.params.state();
-    stage.open_page("Model");
+    stage.tab("Model");
     let place = stage.harness.get_by_label("Count").rect().center();
     for pressed in [true, false] {
         stage.harness.event(Event::PointerMoved(place));
@@ -142,14 +137,14 @@ fn the_first_five_minutes() {
     stage.harness.run_steps(3);
     assert_eq!((stage.params.name().as_str(), stage.origin()), ("Marimba", Origin::Table));
 
-    stage.open_page("Model");
+    stage.tab("Model");
     stage.pick("Model of the body", "marimba");
     let wood = stage.params.state().values.get(Param::Decay);
     stage.pick("Material of the body", "glass");
     let glass = stage.params.state().values.get(Param::Decay);
     assert!(glass > 2.0 * wood, "glass rings longer than rosewood: {wood} s, {glass} s");
 
-    stage.open_page("Space");
+    stage.tab("Space");
     stage.pick("Space", "room");
     stage.type_value("Space size", "200 %");
     stage.type_value("Space mix", "40 %");

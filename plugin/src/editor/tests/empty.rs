@@ -25,11 +25,6 @@ impl Stage {
         self.harness.output().shapes.iter().any(|clipped| is_in(&clipped.shape, words))
     }
 
-    fn tab(&mut self, name: &str) {
-        self.harness.get_by_role_and_label(Role::Tab, name).click();
-        self.harness.run_steps(3);
-    }
-
     fn listed(&self) -> usize {
         self.harness.query_all_by_role(Role::ListItem).count()
     }

@@ -55,6 +55,11 @@ impl Stage {
         self.harness.get_by_label(name).click();
         self.harness.run_steps(3);
     }
+
+    pub(super) fn tab(&mut self, name: &str) {
+        self.harness.get_by_role_and_label(Role::Tab, name).click();
+        self.harness.run_steps(3);
+    }
 }
 
 /// Whether the messages are one begin and one end, with only values between them.

@@ -10,7 +10,15 @@ pub(super) mod progress;
 pub(super) mod text;
 mod typing;
 
-use egui::{Color32, Painter, Pos2, Stroke};
+use super::theme::Palette;
+use egui::{Color32, Painter, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
+
+/// Shows a place as that of what has the focus, if it has it.
+pub(super) fn outline(ui: &Ui, response: &Response, rect: Rect, radius: u8, palette: &Palette) {
+    if response.has_focus() {
+        ui.painter().rect_stroke(rect, radius, Stroke::new(1.5, palette.text), StrokeKind::Inside);
+    }
+}
 
 /// Paints what `Painter::circle` does, with the edge around the radius, from two filled discs. `fill` must be opaque. Up to a radius of
 /// 6.7 physical pixels, egui has discs as pictures: both together take 4 triangles, where a circle with an edge takes 150.
