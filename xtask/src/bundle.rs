@@ -3,6 +3,7 @@
 use crate::files::{copy, replace, write};
 use crate::patch;
 use crate::shell::{cargo, root, run_to_end};
+use crate::steps::TESTED;
 use crate::symbols;
 use crate::system::{Profile, System};
 use std::path::{Path, PathBuf};
@@ -59,12 +60,9 @@ pub(crate) fn run(system: &System, profile: Profile) -> Result<PathBuf, String> 
 /// The plugin's library, as cargo calls it.
 const LIBRARY: &str = "sprung_plugin";
 
-/// The command that runs the plugin's own tests.
-pub(crate) const TESTS: &str = "test --manifest-path plugin/Cargo.toml --features standalone --no-fail-fast";
-
-/// Writes bundles with the library that [`TESTS`] builds, so that it is not compiled a second time with other features.
+/// Builds all tests, and writes bundles with the library that they have.
 pub(crate) fn of_the_tests() -> Result<PathBuf, String> {
-    run_to_end(&mut cargo(&format!("{TESTS} --no-run")), "the plugin does not build")?;
+    run_to_end(&mut cargo(&format!("test {TESTED} --no-run")), "the tests do not build")?;
     let system = System::own();
     // Where cargo leaves what tests depend on.
     fill_all(&system, &system.folder().join("debug/deps").join(system.library(LIBRARY)))

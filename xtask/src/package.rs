@@ -3,6 +3,7 @@
 use crate::count::Count;
 use crate::python;
 use crate::shell::{cargo, root, run_and_read, run_to_end};
+use crate::steps::TESTED;
 use crate::system::System;
 use std::process::Command;
 
@@ -13,7 +14,7 @@ pub(crate) fn test() -> Result<Count, String> {
     let folder = root().join("src/python");
     // With the features that the tests of the other packages have, and those of what they alone need, so that nothing is compiled
     // again.
-    let mut build = cargo("build --workspace --all-features --lib --bins --tests");
+    let mut build = cargo(&format!("build {TESTED}"));
     run_to_end(build.env("PYO3_BUILD_EXTENSION_MODULE", "1"), "the package does not build")?;
     let system = System::own();
     // As Python calls modules in a library of the system's.

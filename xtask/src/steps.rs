@@ -31,15 +31,12 @@ const fn tests(name: &'static str, commands: &'static [&'static str]) -> Step {
 
 /// What every commit is checked for before its tests run.
 pub(crate) const CHECKS: &[Step] = &[
-    check("format", &["fmt --all --check", "fmt --manifest-path plugin/Cargo.toml --check"]),
-    check(
-        "lint",
-        &[
-            "clippy --workspace --all-targets --all-features -- -D warnings",
-            "clippy --manifest-path plugin/Cargo.toml --all-targets --all-features -- -D warnings",
-        ],
-    ),
+    check("format", &["fmt --all --check"]),
+    check("lint", &["clippy --workspace --all-targets --all-features -- -D warnings"]),
 ];
+
+/// What is built for the tests, at once and with all features, so that nothing is compiled a second time with others.
+pub(crate) const TESTED: &str = "--workspace --all-features --lib --bins --tests";
 
 /// The examples in the documentation, which nextest does not run.
 pub(crate) const EXAMPLES: Step = tests("examples", &["test --doc --workspace --all-features"]);
@@ -51,15 +48,12 @@ pub(crate) const LONG: &[Step] = &[
         &[
             "hack clippy --package sprung --package sprung-cli --each-feature --all-targets -- -D warnings",
             "clippy --package xtask --all-targets -- -D warnings",
-            "clippy --manifest-path plugin/Cargo.toml -- -D warnings",
+            "clippy --package sprung-plugin -- -D warnings",
         ],
     ),
     Step {
         name: "documentation",
-        commands: &[
-            "doc --workspace --no-deps --all-features",
-            "doc --manifest-path plugin/Cargo.toml --no-deps --all-features",
-        ],
+        commands: &["doc --workspace --no-deps --all-features"],
         environment: &[("RUSTDOCFLAGS", "-D warnings")],
         shows: Shows::OneCheck,
     },
@@ -92,7 +86,7 @@ pub(crate) const LONG: &[Step] = &[
 pub(crate) const ELSEWHERE: [&str; 2] = [
     "test --package sprung --package sprung-cli --features sprung/batch,sprung/lab --no-fail-fast \
      --test golden --test cli",
-    "test --manifest-path plugin/Cargo.toml --no-fail-fast --test hosts",
+    "test --package sprung-plugin --no-fail-fast --test hosts",
 ];
 
 /// Systems on which nothing can be run here: the types of all parts are checked for them, by the compiler's names.

@@ -2,7 +2,7 @@
 
 use crate::count::{Count, Shows};
 use crate::shell::{cargo, root, run_and_read, succeeds};
-use crate::steps::{CHECKED, CHECKS, ELSEWHERE, EXAMPLES, LONG, Step, Suite};
+use crate::steps::{CHECKED, CHECKS, ELSEWHERE, EXAMPLES, LONG, Step, Suite, TESTED};
 use crate::system::{Profile, System};
 use crate::wine::{self, Prefix};
 use crate::{bundle, package, patch, setup};
@@ -30,7 +30,6 @@ pub(crate) fn run(suite: Suite, only: &str) -> Result<(), String> {
     CHECKS.iter().for_each(|step| run(step.name, &|| step.run()));
     run("tests", &|| tests(suite));
     run(EXAMPLES.name, &|| EXAMPLES.run());
-    run("plugin, as bundled", &|| plugin(suite));
     run("Python package", &package::test);
     if suite == Suite::All {
         LONG.iter().for_each(|step| run(step.name, &|| step.run()));
@@ -52,40 +51,30 @@ pub(crate) fn run(suite: Suite, only: &str) -> Result<(), String> {
     if total.failed == 0 { Ok(()) } else { Err("the suite failed".to_owned()) }
 }
 
-/// Runs the tests of all packages but the plugin: with nextest, which needs no program to end before the next begins, or with the
-/// harness where it is missing.
+/// Runs the tests of all packages, the plugin as bundled in real hosts among them: with nextest, which needs no program to end
+/// before the next begins, or with the harness where it is missing.
 fn tests(suite: Suite) -> Result<Count, String> {
     if !cfg!(target_os = "linux") {
-        return count(cargo(ELSEWHERE[0]), Shows::Tests);
-    }
-    let has_nextest = succeeds("cargo", &["nextest", "--version"]);
-    let command = match (has_nextest, suite) {
-        (true, Suite::Commit) => "nextest run --workspace --all-features --no-fail-fast --status-level fail",
-        (true, Suite::All) => {
-            "nextest run --workspace --all-features --no-fail-fast --status-level slow --run-ignored all"
-        }
-        (false, Suite::Commit) => "test --workspace --all-features --no-fail-fast --lib --bins --tests",
-        (false, Suite::All) => {
-            "test --workspace --all-features --no-fail-fast --lib --bins --tests -- --include-ignored"
-        }
-    };
-    count(cargo(command), Shows::Tests)
-}
-
-/// Runs the plugin's own tests and those of the program, and tests the bundles that musicians install in real hosts.
-fn plugin(suite: Suite) -> Result<Count, String> {
-    if !cfg!(target_os = "linux") {
-        let mut command = cargo(ELSEWHERE[1]);
-        command.env("SPRUNG_BUNDLES", bundle::run(&System::own(), Profile::Debug)?);
-        return count(command, Shows::Tests);
+        let mut total = count(cargo(ELSEWHERE[0]), Shows::Tests)?;
+        let mut hosts = cargo(ELSEWHERE[1]);
+        hosts.env("SPRUNG_BUNDLES", bundle::run(&System::own(), Profile::Debug)?);
+        total.add(count(hosts, Shows::Tests)?);
+        return Ok(total);
     }
     let folder =
         if suite == Suite::All { bundle::run(&System::own(), Profile::Release) } else { bundle::of_the_tests() }?;
-    let mut command = cargo(bundle::TESTS);
+    let (nextest, harness) = match suite {
+        Suite::Commit => ("--status-level fail", ""),
+        Suite::All => ("--status-level slow --run-ignored all", "-- --include-ignored"),
+    };
+    let mut command = if succeeds("cargo", &["nextest", "--version"]) {
+        // One more than cores, because some wait for files, devices and other programs.
+        let threads = std::thread::available_parallelism().map_or(1, usize::from) + 1;
+        cargo(&format!("nextest run {TESTED} --no-fail-fast --test-threads {threads} {nextest}"))
+    } else {
+        cargo(&format!("test {TESTED} --no-fail-fast {harness}"))
+    };
     command.env("SPRUNG_BUNDLES", folder);
-    if suite == Suite::All {
-        command.args(["--", "--include-ignored"]);
-    }
     count(command, Shows::Tests)
 }
 
@@ -108,11 +97,9 @@ fn windows() -> Result<Count, String> {
 fn types() -> Result<Count, String> {
     let mut total = Count::default();
     for system in CHECKED {
-        for check in ["check --workspace --all-features", "check --manifest-path plugin/Cargo.toml --all-features"] {
-            let mut command = cargo(check);
-            command.args(["--target", system]);
-            total.add(count(command, Shows::OneCheck)?);
-        }
+        let mut command = cargo("check --workspace --all-features");
+        command.args(["--target", system]);
+        total.add(count(command, Shows::OneCheck)?);
     }
     Ok(total)
 }

@@ -47,7 +47,12 @@ fn read(metadata: &Value, crates: &mut Crates) {
         let name = text(&package["name"]);
         let is_own = name.starts_with("sprung") || name == "xtask";
         if used.contains(&text(&package["id"])) && !is_own {
-            let folder = Path::new(package["manifest_path"].as_str().unwrap_or_default()).parent();
+            // The manifests of corrected crates are in our tree, and their texts beside the source.
+            let folder = [(&package["manifest_path"], 1), (&package["targets"][0]["src_path"], 2)]
+                .map(|(path, up)| path.as_str().and_then(|path| Path::new(path).ancestors().nth(up)))
+                .into_iter()
+                .flatten()
+                .find(|folder| !texts(folder).is_empty());
             let licence = package["license"].as_str().unwrap_or("see its text").to_owned();
             crates.insert(
                 format!("{name} {}", text(&package["version"])),
