@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 use std::sync::{Arc, LazyLock};
 
 const FRAMES: usize = 9_600;
-const CASES: u32 = 64;
+const CASES: u32 = 32;
 const RATES: [f64; 8] = [1_000.0, 8_000.0, 22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0, 768_000.0];
 
 /// What is played, and how the ensemble and the blocks divide the frames.
