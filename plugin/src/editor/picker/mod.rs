@@ -47,9 +47,11 @@ pub(super) struct Picker {
     work: Option<Background<Listing>>,
     search: Option<Background<Vec<Entry>>>,
     chosen: BTreeSet<PathBuf>,
-    /// The path that is typed, and the name of the file to save.
+    /// The path that is shown or typed, and the name of the file to save.
     path: String,
     name: String,
+    /// Whether the path is being typed, so that a folder that arrives late does not write over it.
+    is_typed: bool,
     /// A path that is written over if the user saves again.
     confirm: Option<PathBuf>,
     complaint: String,
@@ -75,7 +77,7 @@ impl Picker {
 
     fn go(&mut self, path: PathBuf) {
         self.chosen.clear();
-        (self.complaint, self.confirm) = (String::new(), None);
+        (self.complaint, self.confirm, self.is_typed) = (String::new(), None, false);
         let endings = match self.pick {
             Some(Pick::Scale) => drops::SCALES.to_vec(),
             Some(Pick::Place(_)) => drops::SOUNDS.to_vec(),
@@ -107,7 +109,9 @@ impl Picker {
         self.work = None;
         match ended {
             Ok(listing) => {
-                self.path = listing.folder.display().to_string();
+                if !self.is_typed {
+                    self.path = listing.folder.display().to_string();
+                }
                 self.chosen.clear();
                 self.listing = listing;
                 self.listing.file.take()
@@ -150,6 +154,7 @@ impl Picker {
         let edit = TextEdit::singleline(&mut self.path).id(Id::unique("path")).hint_text("a folder or file");
         let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
         name_field(&response, "Path of a folder or file", &self.path);
+        self.is_typed |= response.changed();
         if is_entered(&response) {
             to = Some(PathBuf::from(self.path.trim()));
         }
