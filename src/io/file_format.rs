@@ -49,7 +49,7 @@ impl FileFormat {
         }
     }
 
-    /// As [`FileFormat::check`], with an error that names the command's option.
+    /// As `FileFormat::check`, with an error that names the command's option.
     ///
     /// # Errors
     /// [`Error::Value`].

@@ -46,7 +46,7 @@ fn through_wav<T>(output: &mut Output, write: impl FnOnce(&mut Output) -> Result
 /// and chosen by counting bits, so no floating point takes part. Memory use does not grow with the length.
 ///
 /// # Errors
-/// [`Error::Value`] for floats, for rates above [`HIGHEST_RATE`] and for longer files, [`Error::Io`] if reading or writing fails.
+/// [`Error::Value`] for floats, for rates above 96 kHz and for longer files, [`Error::Io`] if reading or writing fails.
 pub fn encode(wav: &mut File, out: &mut File, name: &str) -> Result<()> {
     let failed = |source| Error::io(name, source);
     check_wav_length(wav.seek(SeekFrom::End(0)).map_err(failed)?)?;

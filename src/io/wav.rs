@@ -29,7 +29,7 @@ impl<W: Write + Seek> WavWriter<W> {
     /// 1992). Floats are not rounded and get no noise.
     ///
     /// # Errors
-    /// [`Error::Io`] if the header cannot be written, [`Error::Value`] as [`WavFormat::file_len`].
+    /// [`Error::Io`] if the header cannot be written, [`Error::Value`] as `WavFormat::file_len`.
     pub fn new(out: W, name: &str, format: WavFormat, dither: Option<u64>, frames: Option<u64>) -> Result<Self> {
         Self::open(out, name, format, dither, frames, Vec::new())
     }

@@ -32,7 +32,7 @@ impl HammerLaw {
 }
 
 /// A hammer in flight: it touches the body, comes off, may be touched again, and is gone when it has been off for longer than
-/// it touched. What it adds is at most the energy of its flight; see [`Felt`]. Real-time safe.
+/// it touched. What it adds is at most the energy of its flight; see `Felt`. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub struct Hammer {
     law: HammerLaw,

@@ -32,7 +32,7 @@ pub enum RattleKind {
     },
 }
 
-/// A rattle. It only passes on energy that the body has, and what it takes with each hit is lost; see [`Felt`]. Real-time safe.
+/// A rattle. It only passes on energy that the body has, and what it takes with each hit is lost; see `Felt`. Real-time safe.
 ///
 /// The weight of a loose mass bends the body at rest, which is its place: only what differs from that weight acts on the modes.
 #[derive(Clone, Copy, Debug)]

@@ -15,7 +15,7 @@ use symphonia::core::meta::MetadataOptions;
 /// Length in bytes of the longest frame of MPEG audio, 320 kbit/s at 8 kHz.
 const MOST_FRAME: usize = 2881;
 
-/// Name of the thread that decodes. Symphonia panics at some damaged files; [`read`] makes an error of it, and whoever shows panics
+/// Name of the thread that decodes. Symphonia panics at some damaged files; `read` makes an error of it, and whoever shows panics
 /// can leave it out.
 pub const DECODER: &str = "sound decoder";
 
