@@ -88,7 +88,7 @@ impl Package {
         let place = root().join(PLACE).join(name);
         let wanted = self.stamp();
         if fs::read_to_string(place.join(STAMP)).is_ok_and(|found| found == wanted) {
-            return Ok(());
+            return self.check_manifest(&place);
         }
         let source = self.source()?;
         let found = digest::of_folder(&source)?;
@@ -100,7 +100,6 @@ impl Package {
                 self.source
             ));
         }
-        self.check_manifest(&source)?;
         make_folder_of(&place)?;
         replace(&place, |aside| {
             copy(&source, aside)?;
@@ -114,7 +113,7 @@ impl Package {
             write(&aside.join(STAMP), &wanted)
         })?;
         println!("{}: {name} {version} with {} corrections", place.display(), self.edits().count());
-        Ok(())
+        self.check_manifest(&place)
     }
 
     /// Checks that the plugin requires the version for which the corrections were made.
