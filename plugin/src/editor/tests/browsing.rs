@@ -76,6 +76,36 @@ fn a_slash_searches_in_the_program_alone_since_a_hosts_keys_are_its_own() {
 }
 
 #[test]
+fn keys_undo_and_redo_in_the_program_alone_and_search_no_sound_where_a_path_is_typed() {
+    for is_alone in [false, true] {
+        let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+        stage.host.is_alone.store(is_alone, Relaxed);
+        let before = stage.params.state();
+        stage.button("Next sound");
+        let after = stage.params.state();
+        let mut press = |modifiers, key| {
+            stage.harness.key_press_modifiers(modifiers, key);
+            stage.harness.run_steps(3);
+            stage.params.state()
+        };
+        let shifted = Modifiers::COMMAND | Modifiers::SHIFT;
+        for (modifiers, key, then) in [
+            (Modifiers::COMMAND, Key::Z, &before),
+            (shifted, Key::Z, &after),
+            (Modifiers::COMMAND, Key::Z, &before),
+            (Modifiers::COMMAND, Key::Y, &after),
+        ] {
+            assert_eq!(&press(modifiers, key), if is_alone { then } else { &after }, "{modifiers:?} {key:?}");
+        }
+        stage.button("Browse");
+        stage.button("Import files");
+        stage.harness.key_press(Key::Slash);
+        stage.harness.run_steps(3);
+        assert!(stage.harness.query_by_label("Path of a folder or file").is_some());
+    }
+}
+
+#[test]
 fn a_sound_is_saved_under_a_name_found_again_and_thrown_away() {
     let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
     let library = Library::at(stage.folder.path());

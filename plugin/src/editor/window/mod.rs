@@ -32,7 +32,7 @@ use crate::editor::theme::layout::Layout;
 use crate::editor::theme::{Theme, install_fonts};
 use crate::params::SprungParams;
 use crate::state::State;
-use egui::{Event, Key, Ui};
+use egui::{Event, Key, Modifiers, Ui};
 pub(super) use header::Face;
 use header::{Header, Request};
 use meter::Meter;
@@ -321,7 +321,7 @@ impl Window {
         // In a plugin, the computer's keyboard belongs to the host.
         let is_alone = host.plugin_api() == PluginApi::Standalone;
         let is_typing = ui.ctx().egui_wants_keyboard_input();
-        let searches = is_alone && !is_typing && ui.input(|input| input.key_pressed(Key::Slash));
+        let by_key = (is_alone && !is_typing).then(|| asked_by_key(self.over, ui)).flatten();
         let played = is_alone.then(|| self.computer_keyboard.follow(ui, params.link())).flatten();
         let bound = binding::follow(ui, self.browser.library(), &mut controls);
         let learnt = bound.or_else(|| learn::follow(ui, &mut controls));
@@ -345,8 +345,7 @@ impl Window {
         let load = self.load.share(now, telemetry, sample_rate);
         let engine = status::engine(voices, load, sample_rate);
         self.line.show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
-        let search = (searches && self.over != Some(Over::Browser)).then_some(Request::Browse);
-        if let Some(request) = request.or(search) {
+        if let Some(request) = request.or(by_key) {
             self.carry_out(request, ui, host);
         }
         if let (Some(name), Some(library)) = (self.history.take_chosen(), self.browser.library())
@@ -366,4 +365,21 @@ impl Window {
             self.message = Ok(String::new());
         }
     }
+}
+
+/// What the computer's keys ask for, in the program alone.
+fn asked_by_key(over: Option<Over>, ui: &Ui) -> Option<Request> {
+    // With Shift first: a shortcut without it is also found with it.
+    let shortcuts = [
+        (Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, Request::Redo),
+        (Modifiers::COMMAND, Key::Y, Request::Redo),
+        (Modifiers::COMMAND, Key::Z, Request::Undo),
+        (Modifiers::NONE, Key::Slash, Request::Browse),
+    ];
+    let found =
+        shortcuts.into_iter().find(|(modifiers, key, _)| ui.input_mut(|input| input.consume_key(*modifiers, *key)));
+    let request = found.map(|(_, _, request)| request)?;
+    // A list of sounds that is open is not closed by it, and a path begins with it.
+    let is_taken = matches!(over, Some(Over::Browser | Over::Files)) && request == Request::Browse;
+    (!is_taken).then_some(request)
 }

@@ -41,6 +41,8 @@ impl Window {
 
     /// Undoes or redoes a step, which may exchange the two versions.
     fn go_back(&mut self, go: impl FnOnce(&mut History, &SprungParams, &GuiContext) -> bool, host: &GuiContext) {
+        // What was said of the step is no longer so.
+        self.message = Ok(String::new());
         let now = (self.params.state(), self.history.is_changed());
         if go(&mut self.history, &self.params, host) {
             self.other = Some(now);
