@@ -47,7 +47,7 @@ enum Chore {
         /// Only steps whose name contains this, such as Windows
         only: Option<String>,
     },
-    /// Put the plugin's wrapper, with our corrections, where cargo finds it in the folder `plugin`. Other chores do it too.
+    /// Put the plugin's wrapper, with our corrections, where the manifests in plugin/wrapper have their sources. Other chores do it too.
     Patch,
     /// Build the plugin and put Sprung.clap and Sprung.vst3 into target/bundled, for another system into target/TRIPLE/bundled.
     Bundle {

@@ -48,16 +48,14 @@ fn read(metadata: &Value, crates: &mut Crates) {
         let is_own = name.starts_with("sprung") || name == "xtask";
         if used.contains(&text(&package["id"])) && !is_own {
             // The manifests of corrected crates are in our tree, and their texts beside the source.
-            let folder = [(&package["manifest_path"], 1), (&package["targets"][0]["src_path"], 2)]
+            let texts = [(&package["manifest_path"], 1), (&package["targets"][0]["src_path"], 2)]
                 .map(|(path, up)| path.as_str().and_then(|path| Path::new(path).ancestors().nth(up)))
                 .into_iter()
                 .flatten()
-                .find(|folder| !texts(folder).is_empty());
+                .map(texts)
+                .find(|texts| !texts.is_empty());
             let licence = package["license"].as_str().unwrap_or("see its text").to_owned();
-            crates.insert(
-                format!("{name} {}", text(&package["version"])),
-                (licence, folder.map(texts).unwrap_or_default()),
-            );
+            crates.insert(format!("{name} {}", text(&package["version"])), (licence, texts.unwrap_or_default()));
         }
     }
 }

@@ -66,6 +66,9 @@ const PACKAGES: [Package; 4] = [
 /// says which command to run.
 const PLACE: &str = "target/run-cargo-xtask-patch";
 
+/// The folder with the packages' manifests.
+const MANIFESTS: &str = "plugin/wrapper";
+
 /// A file next to the patched source that contains the digest of everything it was made from.
 const STAMP: &str = "made-with";
 
@@ -137,17 +140,16 @@ impl Package {
         let of = |path: &Path| -> Result<toml::Table, String> {
             read(path)?.parse().map_err(|error| format!("{}: {error}", path.display()))
         };
-        let path = root().join("plugin/wrapper").join(self.name).join("Cargo.toml");
+        let path = root().join(MANIFESTS).join(self.name).join("Cargo.toml");
         let (ours, theirs) = (of(&path)?, of(&source.join("Cargo.toml"))?);
-        for key in ["package.version", "package.edition", "package.license", "features", "dependencies", "target"] {
-            let part = |manifest: &toml::Table| {
-                key.split('.').try_fold(toml::Value::from(manifest.clone()), |value, key| value.get(key).cloned())
-            };
-            if part(&ours) != part(&theirs) {
-                return Err(format!("{}: ‘{key}’ is not as in {}", path.display(), source.display()));
-            }
+        let package = |key| (key, ours["package"].get(key), theirs["package"].get(key));
+        let table = |key| (key, ours.get(key), theirs.get(key));
+        let parts = ["version", "edition", "license"].map(package).into_iter();
+        let mut parts = parts.chain(["features", "dependencies", "target"].map(table));
+        match parts.find(|(_, ours, theirs)| ours != theirs) {
+            Some((key, ..)) => Err(format!("{}: ‘{key}’ is not as in {}", path.display(), source.display())),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// The folder in which cargo keeps the registry's source of the package. Fetches the source if necessary.
@@ -255,5 +257,18 @@ mod tests {
         }
         let message = PACKAGES[0].apply(edit::WORKER, "something else").unwrap_err();
         assert!(message.contains(edit::WORKER) && message.contains("0 times in place of 1"), "{message}");
+    }
+
+    /// Without its entry or its path, cargo would build a package uncorrected or not at all.
+    #[test]
+    fn cargo_finds_every_corrected_package() {
+        let manifest = |path: &str| read(&root().join(path)).unwrap().parse::<toml::Table>().unwrap();
+        let patched = &manifest("Cargo.toml")["patch"]["crates-io"];
+        for Package { name, .. } in PACKAGES {
+            let place = patched[name]["path"].as_str().unwrap();
+            assert_eq!(place, format!("{MANIFESTS}/{name}"));
+            let library = &manifest(&format!("{place}/Cargo.toml"))["lib"]["path"];
+            assert_eq!(library.as_str().unwrap(), format!("../../../{PLACE}/{name}/src/lib.rs"));
+        }
     }
 }
