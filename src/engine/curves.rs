@@ -2,7 +2,7 @@
 
 use super::gain::pan_gains;
 use super::space::body;
-use crate::dsp::exciter::Bow;
+use crate::dsp::exciter::{Bow, JetLaw, MouthpieceLaw};
 use crate::dsp::space::{Decay, Overdrive, Tone, Tremolo};
 use crate::params::{Soundbox, Valve};
 use crate::sound::blown;
@@ -18,9 +18,14 @@ pub fn friction(width: f32, slip: f32) -> f32 {
     Bow::friction(width, slip)
 }
 
-/// The flow through a valve at rest, at a steady pressure difference of which 1 closes a reed; `opening` is from 0 to 1.
+/// The flow through a valve at rest, at a steady pressure difference of which 1 closes a reed, or of a jet into a tube, by its bend in
+/// half widths; `opening` is from 0 to 1.
 pub fn flow(valve: Valve, opening: f64, difference: f64) -> f64 {
-    blown::law(valve, 0.0, 0.0).steady_flow(blown::flow(opening), difference)
+    let opening = blown::flow(opening);
+    match blown::law(valve, 0.0, 1.0, 0.0) {
+        MouthpieceLaw::Valve(law) => law.steady_flow(opening, difference),
+        MouthpieceLaw::Jet(_) => opening * JetLaw::into_tube(difference),
+    }
 }
 
 /// The gain of a tremolo with a depth from 0 to 1, after some turns of its motor.
@@ -97,10 +102,11 @@ mod tests {
     }
 
     #[test]
-    fn a_reed_closes_and_lips_open() {
+    fn a_reed_closes_lips_open_and_a_jet_turns_in() {
         let at = |valve, difference| flow(valve, 0.5, difference);
         assert!(at(Valve::Reed, 0.3) > at(Valve::Reed, 0.9) && at(Valve::Reed, 1.0) == 0.0);
         assert!(at(Valve::Lips, 1.0) > 3.0 * at(Valve::Lips, 0.3) && at(Valve::Lips, 0.0) == 0.0);
+        assert!(at(Valve::Jet, 3.0) > 1.9 * at(Valve::Jet, 0.3) && at(Valve::Jet, -9.0) < 0.01 * at(Valve::Jet, 0.3));
         assert!(friction(0.2, 0.0) == 1.0 && (friction(0.2, 0.2) - 0.65).abs() < 1e-6);
         assert_eq!((force(0.0, 0.0), force(0.5, 2.0), pan(0.5)), (0.0, 0.25, [1.0; 2]));
     }

@@ -64,12 +64,14 @@ choices! {
         Loose "loose",
     }
 
-    /// What breath goes through into a tube.
+    /// How breath gets into a tube.
     Valve {
         /// A reed, which the breath closes.
         Reed "reed",
         /// Lips, which the breath opens.
         Lips "lips",
+        /// A jet across the mouth of the tube, which blows into it or past its edge.
+        Jet "jet",
     }
 
     /// How a noise burst decays.

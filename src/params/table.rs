@@ -98,15 +98,15 @@ table! {
         BreathLevel "breath_level" "Breath level", Decibels -60.0..24.0 = -60.0, Linear, NextNote,
             "Loudness of a tube that is blown while the key is held, its lowest 64 modes; at -60 dB there is no breath.";
         BreathPressure "breath_pressure" "Breath pressure", Percent 0.0..200.0 = 60.0, Linear, Smoothed(20),
-            "Pressure in the mouth: at 100 % it closes a reed; below some 40 % nothing speaks, and more is louder and brighter.";
-        BreathValve "breath_valve" "Breath valve", Choice[Valve] 0.0..1.0 = 0.0, Linear, NextNote,
-            "What the breath goes through: a reed, which it closes, or lips, which it opens.";
+            "Pressure in the mouth: at 100 % it closes a reed; too little does not speak, and more is louder and brighter.";
+        BreathValve "breath_valve" "Breath valve", Choice[Valve] 0.0..2.0 = 0.0, Linear, NextNote,
+            "What the breath goes through: a reed, which it closes, lips, which it opens, or a flute's jet across an edge.";
         BreathOpening "breath_opening" "Breath opening", Percent 0.0..100.0 = 50.0, Linear, Smoothed(20),
-            "How far reed or lips stand open at rest: more air speaks sooner and is brighter.";
+            "How far reed or lips stand open at rest, or how thick the jet is: more air speaks sooner and is brighter.";
         BreathLip "breath_lip" "Breath lip", Semitones -12.0..12.0 = 0.0, Linear, Smoothed(20),
-            "Tension of reed or lips: a little bends the pitch and the colour, much makes the note crack.";
+            "Tension of reed or lips, or how near the lips are to the edge: a little bends the pitch, much makes the note crack.";
         BreathNoise "breath_noise" "Breath noise", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20),
-            "Turbulence in the valve: wind that the tube colours.";
+            "Turbulence of the breath: wind that the tube colours.";
         BreathAttack "breath_attack" "Breath attack", Seconds 0.0..2.0 = 0.03, Linear, NextNote,
             "Time until the breath has its pressure.";
         BreathTongue "breath_tongue" "Breath tongue", Percent 0.0..100.0 = 25.0, Linear, NextNote,

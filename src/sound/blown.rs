@@ -1,11 +1,11 @@
-//! Tubes that are blown: what of a patch makes the valve and the tube, and the pitch at which the two sound together.
+//! Tubes that are blown: what of a patch makes the mouthpiece and the tube, and the pitch at which the two sound together.
 //!
 //! A valve has a mass, so its flow comes late, and the note sounds below the tube with a reed and above it with lips: by 5 to
-//! 60 cents, more at high keys. A player's ear puts that right; here, each blown sound is played off the audio thread at every
-//! third key, by the bank and the valve that the voices use, and the tube is tuned against what was heard.
+//! 60 cents, more at high keys; a jet is within some cents. A player's ear puts that right; here, each blown sound is played off the audio thread at every
+//! third key, by the bank and the mouthpiece that the voices use, and the tube is tuned against what was heard.
 
 use crate::dsp::CONTROL_FRAMES;
-use crate::dsp::exciter::{Breath, Player, Valve, ValveLaw};
+use crate::dsp::exciter::{Breath, JetLaw, Mouthpiece, MouthpieceLaw, Player, ValveLaw};
 use crate::dsp::mode_bank::{MAX_MODES, ModeBank, ModeRows, ModeSetup};
 use crate::params::{Choice, Param, Valve as Kind};
 use crate::patch::routes::{Route, Source, amount_param};
@@ -37,26 +37,42 @@ const HIGHEST_SHARE: f64 = 0.45;
 /// pressures fall in a blown tube: so levels are near the amplitudes that are heard, as they are under any other exciter.
 const HEARD: f64 = 5.0 / 3.0;
 
+/// How much more is heard of a speed at the edge of a jet than of a pressure behind a valve: a jet's air reaches a quarter of what a reed's
+/// pressure does, and a knob's dB should mean about the same for both.
+const SPEED: f64 = 4.0;
+
 /// Modes softer than this, against the loudest, count as this loud: what gives a pressure cannot be infinitely soft.
 const SOFTEST: f64 = 1e-3;
 
-/// The valve of a kind, whose tension is moved by `lip` semitones, for a note of this frequency in Hz.
-pub(crate) fn law(kind: Kind, lip: f64, frequency: f64) -> ValveLaw {
+/// A jet is in step with its note at this pressure. Harder breath makes it faster, by the square root; the player takes back most of
+/// that by the distance of the lips, and this power is left.
+const IN_STEP: f64 = 0.6;
+const LEFT: f64 = 0.15;
+
+/// The mouthpiece of a kind under a pressure, whose tension is moved by `lip` semitones, for a note of this frequency in Hz.
+pub(crate) fn law(kind: Kind, lip: f64, pressure: f64, frequency: f64) -> MouthpieceLaw {
     let tension = ratio_from_semitones(lip);
     match kind {
         Kind::Reed => {
             let own = REED_FREQUENCY.max(REED_RATIO * frequency);
-            ValveLaw { frequency: tension * own, quality: REED_QUALITY, reach: -1.0 }
+            MouthpieceLaw::Valve(ValveLaw { frequency: tension * own, quality: REED_QUALITY, reach: -1.0 })
         }
         Kind::Lips => {
-            ValveLaw { frequency: tension * LIPS_RATIO * frequency, quality: LIPS_QUALITY, reach: LIPS_REACH }
+            let own = LIPS_RATIO * frequency;
+            MouthpieceLaw::Valve(ValveLaw { frequency: tension * own, quality: LIPS_QUALITY, reach: LIPS_REACH })
         }
+        Kind::Jet => MouthpieceLaw::Jet(JetLaw { frequency: tension * frequency * pow(pressure / IN_STEP, LEFT) }),
     }
 }
 
-/// The flow at a pressure difference of 1 through a valve, from its opening, 0–1.
+/// The flow at a pressure difference of 1 through a valve, or the thickness of a jet, from the opening, 0–1.
 pub(crate) fn flow(opening: f64) -> f64 {
     WIDEST_FLOW * opening
+}
+
+/// The amplitude of a mode whose level is 1, per unit of what the mouthpiece of a kind feels, at a breath of this gain.
+pub(crate) fn amplitude(kind: Kind, gain: f64) -> f64 {
+    gain * if kind == Kind::Jet { SPEED } else { 1.0 }
 }
 
 /// The share of the flow that a mode takes, if it sounds at this frequency in Hz.
@@ -163,25 +179,26 @@ fn cents_off(patch: &Patch, key: f64, cents: f64) -> Option<f64> {
     let mut bank = ModeBank::new(RATE);
     let rows: ModeRows = modes.iter().zip(shares()).map(setup).collect();
     bank.load(&rows);
-    // Heard is what the valve feels: all modes alike.
+    // Heard is what the mouthpiece feels: all modes alike.
     shares().enumerate().for_each(|(m, share)| bank.set_contact(m, share as f32, rows.left[m]));
-    let mut valve = Valve::REST;
-    valve.breath = Breath {
-        pressure: [(0.01 * value(Param::BreathPressure)) as f32, 0.0],
+    let pressure = 0.01 * value(Param::BreathPressure);
+    let mut mouthpiece = Mouthpiece::REST;
+    mouthpiece.breath = Breath {
+        pressure: [pressure as f32, 0.0],
         opening: flow(0.01 * value(Param::BreathOpening)) as f32,
         per_frame: (frequency / RATE) as f32,
         shares: shares().sum::<f64>() as f32,
         ..Breath::NONE
     };
     let kind = Kind::from_value(patch.get(Param::BreathValve));
-    valve.set(law(kind, value(Param::BreathLip), frequency), RATE);
+    mouthpiece.set(law(kind, value(Param::BreathLip), pressure, frequency), RATE);
 
     let frames = |[seconds, periods]: [f64; 2]| (RATE * f64::max(seconds, periods / wanted)) as usize;
     let (settled, window) = (frames(SETTLED), frames(WINDOW));
     let mut heard = vec![];
     while heard.len() < settled + 2 * window {
         bank.sweep_to(1.0, CONTROL_FRAMES);
-        let [left, _] = bank.render_played(None, Some(Player::Breath(&mut valve)), CONTROL_FRAMES);
+        let [left, _] = bank.render_played(None, Some(Player::Breath(&mut mouthpiece)), CONTROL_FRAMES);
         heard.extend_from_slice(left);
     }
     let loudest = heard[settled..].iter().fold(0.0, |most: f32, sample| most.max(sample.abs()));

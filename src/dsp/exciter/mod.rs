@@ -8,22 +8,26 @@
 //! what pushes, and noise that is held to the bursts.
 
 mod bow;
+mod breath;
 mod burst;
 mod felt;
 mod hammer;
+mod jet;
 mod pulse;
 mod rattle;
 mod valve;
 
 use super::CONTROL_FRAMES;
 pub use bow::Bow;
+pub use breath::{Breath, Mouthpiece, MouthpieceLaw};
 use burst::Burst;
 pub use burst::{BurstSetup, Colour, Decay};
 pub(crate) use hammer::MOST_GIVEN;
 pub use hammer::{Hammer, HammerLaw};
+pub use jet::JetLaw;
 use pulse::Pulse;
 pub use rattle::{Rattle, RattleKind, RattleLaw};
-pub use valve::{Breath, Valve, ValveLaw};
+pub use valve::ValveLaw;
 
 /// The forces of up to [`CONTROL_FRAMES`] frames.
 #[derive(Clone, Copy, Debug)]
@@ -48,8 +52,8 @@ impl Drive {
 pub enum Player<'a> {
     /// A bow.
     Bow(Bow),
-    /// Breath through a valve.
-    Breath(&'a mut Valve),
+    /// Breath through a mouthpiece.
+    Breath(&'a mut Mouthpiece),
     /// A hammer.
     Hammer(&'a mut Hammer),
     /// Something that rattles.
@@ -60,11 +64,11 @@ pub enum Player<'a> {
 
 impl Player<'_> {
     /// The force in the frame that is `frame` frames after the next one. `motion` is the sum of the modes at the point of play: a
-    /// speed for a bow, a pressure for a valve, a displacement for a hammer or a rattle.
+    /// speed for a bow and a jet, a pressure for a valve, a displacement for a hammer or a rattle.
     pub(crate) fn force_on(&mut self, frame: usize, motion: f32) -> f32 {
         match self {
             Self::Bow(bow) => bow.force_on(frame, motion),
-            Self::Breath(valve) => valve.flow(frame, motion),
+            Self::Breath(mouthpiece) => mouthpiece.force_on(frame, motion),
             Self::Hammer(hammer) => hammer.force_on(motion),
             Self::Rattle(rattle) => rattle.force_on(motion),
             Self::Forces(forces) => forces[frame],

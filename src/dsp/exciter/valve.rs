@@ -1,6 +1,6 @@
 //! A valve between a mouth and a tube: a reed that the breath closes, or lips that it opens.
 
-use crate::dsp::random::uniform;
+use super::breath::Breath;
 use libm::{cos, exp, sin, sqrt, sqrtf};
 use std::f64::consts::TAU;
 
@@ -10,10 +10,6 @@ const WIDEST: f32 = 64.0;
 
 /// The highest frequency of a valve, as a share of the sample rate.
 const FASTEST: f64 = 0.4;
-
-/// Above this frequency in Hz, turbulence falls by 6 dB an octave: white noise would make a hiss of the highest modes, which
-/// recordings of winds do not have.
-const EDDIES: f64 = 400.0;
 
 /// What a valve is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,29 +29,6 @@ impl ValveLaw {
     pub(crate) fn steady_flow(&self, opening: f64, difference: f64) -> f64 {
         opening * (1.0 + self.reach * difference).clamp(0.0, WIDEST.into()) * sqrt(difference.max(0.0))
     }
-}
-
-/// The breath of some frames, and the tube that it meets.
-#[derive(Clone, Copy, Debug)]
-pub struct Breath {
-    /// Pressure in the mouth, `γ`, at the start of the ramp, and its change per frame.
-    pub pressure: [f32; 2],
-    /// Frames of the ramp that have passed.
-    pub passed: u32,
-    /// Turbulence: the deviation by chance of the pressure behind the flow, as a share of it.
-    pub noise: f32,
-    /// Flow at a difference of 1 through the valve at rest, `β`.
-    pub opening: f32,
-    /// The note's frequency over the sample rate, `q`.
-    pub per_frame: f32,
-    /// The sum of the modes' shares of the flow, `S`.
-    pub shares: f32,
-}
-
-impl Breath {
-    /// No breath, and no tube.
-    pub const NONE: Self =
-        Self { pressure: [0.0; 2], passed: 0, noise: 0.0, opening: 0.0, per_frame: 0.0, shares: 0.0 };
 }
 
 /// The valve of a voice: a mass on a spring that the breath moves, and the flow that it lets through. Real-time safe.
@@ -78,16 +51,7 @@ impl Breath {
 /// a valve that has a mass (Fletcher, "Autonomous vibration of simple pressure-controlled valves in gas flows", JASA 93,
 /// 1993), and with the tube as a sum of modes.
 #[derive(Clone, Copy, Debug)]
-pub struct Valve {
-    /// The breath that it meets in the next frames.
-    pub breath: Breath,
-    /// The stream of the turbulence.
-    pub key: u64,
-    drawn: u64,
-    /// The turbulence now, how far it follows the random numbers in a frame, and the factor that makes its variance 1.
-    eddy: f32,
-    follow: f32,
-    whole: f32,
+pub(super) struct Valve {
     /// Place and velocity of the valve in the coordinates of a mode, as multiples of its opening at rest.
     x: f32,
     y: f32,
@@ -95,59 +59,37 @@ pub struct Valve {
     /// Damping over angular frequency, and the velocity by coordinate for half a frame.
     lag: f32,
     ahead: [f32; 2],
-    law: ValveLaw,
+    reach: f32,
 }
 
 impl Valve {
     /// A valve at rest without breath.
-    pub const REST: Self = Self {
-        breath: Breath::NONE,
-        key: 0,
-        drawn: 0,
-        eddy: 0.0,
-        follow: 0.0,
-        whole: 0.0,
-        x: 0.0,
-        y: 0.0,
-        turn: [0.0; 2],
-        lag: 0.0,
-        ahead: [0.0; 2],
-        law: ValveLaw { frequency: 0.0, quality: 1.0, reach: 0.0 },
-    };
+    pub(super) const REST: Self = Self { x: 0.0, y: 0.0, turn: [0.0; 2], lag: 0.0, ahead: [0.0; 2], reach: 0.0 };
 
-    /// Gives the valve a law. It goes on from where it is.
-    pub fn set(&mut self, law: ValveLaw, sample_rate: f64) {
-        if law == self.law {
-            return;
-        }
+    /// The valve with a law, from where it is.
+    pub(super) fn with(self, law: ValveLaw, sample_rate: f64) -> Self {
         let omega = TAU * law.frequency.min(FASTEST * sample_rate) / sample_rate;
         let damping = omega / (2.0 * law.quality);
         let angle = sqrt((omega * omega - damping * damping).max(1e-12));
         let radius = exp(-damping);
-        self.turn = [(radius * cos(angle)) as f32, (radius * sin(angle)) as f32];
-        self.lag = (damping / angle) as f32;
-        self.ahead = [(-0.5 * damping) as f32, (0.5 * angle) as f32];
-        self.law = law;
-        let follow = 1.0 - exp(-TAU * EDDIES / sample_rate);
-        // The numbers have a variance of 1/3.
-        (self.follow, self.whole) = (follow as f32, sqrt(3.0 * (2.0 - follow) / follow) as f32);
+        Self {
+            turn: [(radius * cos(angle)) as f32, (radius * sin(angle)) as f32],
+            lag: (damping / angle) as f32,
+            ahead: [(-0.5 * damping) as f32, (0.5 * angle) as f32],
+            reach: law.reach as f32,
+            ..self
+        }
     }
 
-    /// The flow in the frame that is `frame` frames after the next one, times `q`, into a tube at pressure `p`.
-    pub(crate) fn flow(&mut self, frame: usize, p: f32) -> f32 {
-        let Breath { pressure, passed, noise, opening, per_frame, shares } = self.breath;
-        let mut mouth = (pressure[0] + (passed as f32 + (frame + 1) as f32) * pressure[1]).max(0.0);
-        if noise > 0.0 {
-            self.eddy += self.follow * (uniform(self.key, self.drawn) - self.eddy);
-            self.drawn += 1;
-            mouth = (mouth * (1.0 + noise * self.whole * self.eddy)).max(0.0);
-        }
+    /// The flow in the next frame, times `q`, from a mouth into a tube at pressure `p`.
+    pub(super) fn flow(&mut self, breath: &Breath, mouth: f32, p: f32) -> f32 {
+        let Breath { opening, per_frame, shares, .. } = *breath;
         let place = self.x + (self.ahead[0] * self.x + self.ahead[1] * self.y);
         let gain = opening * (1.0 + place).clamp(0.0, WIDEST);
         let (left, half) = (mouth - p, 0.5 * shares * per_frame * gain);
         let root = 2.0 * left.abs() / (half + sqrtf(half * half + 4.0 * left.abs()) + f32::MIN_POSITIVE);
         // The place where this difference would hold the valve; in these coordinates, a place at rest has a `y` of its own.
-        let (held, [cos, sin]) = (self.law.reach as f32 * (root * root).copysign(left), self.turn);
+        let (held, [cos, sin]) = (self.reach * (root * root).copysign(left), self.turn);
         let (x, y) = (self.x - held, self.y - self.lag * held);
         (self.x, self.y) = (cos * x + sin * y + held, cos * y - sin * x + self.lag * held);
         per_frame * gain * root.copysign(left)

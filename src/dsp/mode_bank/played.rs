@@ -13,12 +13,12 @@
 //! frame. Force is counted in bow speeds per radian of the note, so the same pressure suits all keys.
 //!
 //! **Breath.** A mode's level says how much of its pressure is heard. So it gives the reciprocal of its level, and takes its
-//! share of the flow times its level: the breath feels the same tube, whatever is heard of it. See [`Valve`] for its energy.
+//! share of the flow times its level: the breath feels the same tube, whatever is heard of it. Of a jet, flow and pressure
+//! change places. See `exciter/valve` and `exciter/jet` for their energies.
 //!
 //! **Hammer.** Its force is constant within a frame, so that it acts on both coordinates, by what the mode has turned at the end
 //! of that frame. The force is known only then, and acts at the start of the next one. See [`Hammer`] for the energy.
 //!
-//! [`Valve`]: crate::dsp::exciter::Valve
 //! [`Hammer`]: crate::dsp::exciter::Hammer
 
 use super::MAX_MODES;

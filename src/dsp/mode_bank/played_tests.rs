@@ -1,7 +1,7 @@
 //! Tests of the upper bounds of what bow and breath add, and of the sound of a bank under them.
 
 use crate::dsp::CONTROL_FRAMES;
-use crate::dsp::exciter::{Bow, Breath, Drive, Player, Valve, ValveLaw};
+use crate::dsp::exciter::{Bow, Breath, Drive, JetLaw, Mouthpiece, MouthpieceLaw, Player, ValveLaw};
 use crate::dsp::mode_bank::{ExcitationGains, ExcitationRows, MAX_MODES, ModeBank, ModeSetup};
 use crate::dsp::random::{key, uniform};
 
@@ -134,7 +134,7 @@ fn a_bowed_bank_has_the_same_bits_in_any_division() {
     assert!(play(&[1, 20, 11]) == whole);
 }
 
-/// A tube of `modes` (ratio, share of the flow), all with one T60, whose left output is the pressure behind the valve.
+/// A tube of `modes` (ratio, share of the flow), all with one T60, whose left output is the pressure behind the mouthpiece.
 fn tube(frequency: f64, t60: f64, modes: &[(f64, f32)], rate: f64) -> (ModeBank, Breath) {
     let mut bank = ModeBank::new(rate);
     let setup = |(ratio, _): &(f64, f32)| ModeSetup { frequency: ratio * frequency, t60, left: 1.0, right: 1.0 };
@@ -144,11 +144,11 @@ fn tube(frequency: f64, t60: f64, modes: &[(f64, f32)], rate: f64) -> (ModeBank,
     (bank, Breath { shares, per_frame: (frequency / rate) as f32, ..Breath::NONE })
 }
 
-/// For all valves, tubes, breaths and pitch changes, no frame adds more energy than the mouth's work, and none without breath.
+/// For all valves, jets, tubes, breaths and pitch changes, no frame adds more energy than the mouth's work, and none without breath.
 #[test]
 fn a_breath_gives_no_more_than_its_work() {
     let mut gained = 0;
-    for seed in 0..SETTINGS {
+    for seed in 0..2 * SETTINGS {
         let mut stream = Stream(key(80, seed), 0);
         let len = 1 + (stream.next() * MAX_MODES as f64) as usize;
         let modes: Vec<_> = (0..len)
@@ -157,16 +157,30 @@ fn a_breath_gives_no_more_than_its_work() {
         let rate = 8000.0 * libm::pow(96.0, stream.next());
         let frequency = 0.2 * rate * libm::pow(1e-4, stream.next());
         let (mut bank, tube) = tube(frequency, 0.001 * libm::pow(3e4, stream.next()), &modes, rate);
-        let mut valve = Valve::REST;
+        let mut mouthpiece = Mouthpiece::REST;
         let reach = if stream.next() < 0.5 { -1.0 } else { libm::pow(100.0, stream.next()) };
         let quality = 0.6 * libm::pow(100.0, stream.next());
-        valve.set(ValveLaw { frequency: rate * libm::pow(1e-4, stream.next()), quality, reach }, rate);
-        let mouth = if seed % 4 == 0 { 0.0 } else { libm::pow(10.0, 4.0 * stream.next() - 2.0) as f32 };
+        let own = rate * libm::pow(1e-4, stream.next());
+        let is_jet = seed % 2 == 1;
+        let law = if is_jet {
+            MouthpieceLaw::Jet(JetLaw { frequency: own })
+        } else {
+            MouthpieceLaw::Valve(ValveLaw { frequency: own, quality, reach })
+        };
+        mouthpiece.set(law, rate);
+        let mouth = if seed % 8 < 2 { 0.0 } else { libm::pow(10.0, 4.0 * stream.next() - 2.0) as f32 };
         let opening = libm::pow(10.0, 4.0 * stream.next() - 2.0) as f32;
-        valve.breath = Breath { pressure: [mouth, 0.0], opening, noise: stream.next() as f32, ..tube };
+        mouthpiece.breath = Breath { pressure: [mouth, 0.0], opening, noise: stream.next() as f32, ..tube };
         // Turbulence is a sum of numbers below 1 whose weights add up to 1, times a factor.
         let most_mouth = f64::from(mouth) * 30.0;
-        let most = 0.77 * 64.0 * f64::from(tube.per_frame * opening) * libm::pow(most_mouth, 1.5);
+        let (q, opening_wide) = (f64::from(tube.per_frame), f64::from(opening));
+        let most = if is_jet {
+            // The jet turns from all outside to all inside in a frame, and turbulence has all of its force.
+            let driven = 0.016 * opening_wide * (2.0 + 6.0 * q) * most_mouth;
+            0.77 * libm::pow(driven, 1.5) / libm::sqrt(2.0 * q)
+        } else {
+            0.77 * 64.0 * q * opening_wide * libm::pow(most_mouth, 1.5)
+        };
         let norm = |bank: &ModeBank| -> f64 {
             modes.iter().enumerate().map(|(m, (_, share))| f64::from(bank.mass(m).1) / f64::from(*share)).sum()
         };
@@ -179,7 +193,7 @@ fn a_breath_gives_no_more_than_its_work() {
             bank.sweep_to(0.5 + stream.next(), CONTROL_FRAMES);
             for _ in 0..CONTROL_FRAMES {
                 let before = norm(&bank);
-                bank.render_played(None, Some(Player::Breath(&mut valve)), 1);
+                bank.render_played(None, Some(Player::Breath(&mut mouthpiece)), 1);
                 let after = norm(&bank);
                 gained += u32::from(after > before * (1.0 + 1e-5));
                 assert!(after <= before * (1.0 + 1e-5) + most * (1.0 + 1e-3), "{seed}: {before} {after} {most}");
@@ -193,13 +207,13 @@ fn a_breath_gives_no_more_than_its_work() {
 fn clarinet(pressure: f32) -> f64 {
     let modes: Vec<_> = (0..30).map(|n| (f64::from(2 * n + 1), 1.0)).collect();
     let (mut bank, tube) = tube(150.0, 4.0, &modes, RATE);
-    let mut valve = Valve::REST;
-    valve.set(ValveLaw { frequency: 12_000.0, quality: 1.0, reach: -1.0 }, RATE);
-    valve.breath = Breath { pressure: [pressure, 0.0], opening: 1.0, ..tube };
+    let mut mouthpiece = Mouthpiece::REST;
+    mouthpiece.set(MouthpieceLaw::Valve(ValveLaw { frequency: 12_000.0, quality: 1.0, reach: -1.0 }), RATE);
+    mouthpiece.breath = Breath { pressure: [pressure, 0.0], opening: 1.0, ..tube };
     let mut heard = vec![];
     for _ in 0..6000 {
         bank.sweep_to(1.0, CONTROL_FRAMES);
-        let [left, _] = bank.render_played(None, Some(Player::Breath(&mut valve)), CONTROL_FRAMES);
+        let [left, _] = bank.render_played(None, Some(Player::Breath(&mut mouthpiece)), CONTROL_FRAMES);
         heard.extend(left.iter().map(|sample| f64::from(*sample)));
     }
     let last = &heard[144_000..];
@@ -226,16 +240,16 @@ fn a_clarinet_speaks_as_ramans_model_says() {
 fn a_blown_bank_has_the_same_bits_in_any_division() {
     let play = |pieces: &[usize]| {
         let (mut bank, tube) = tube(220.0, 0.3, &[(1.0, 1.0), (2.0, 1.0), (3.0, 0.7)], RATE);
-        let mut valve = Valve::REST;
-        valve.set(ValveLaw { frequency: 180.0, quality: 8.0, reach: 3.0 }, RATE);
-        valve.breath = Breath { opening: 1.0, noise: 0.2, ..tube };
+        let mut mouthpiece = Mouthpiece::REST;
+        mouthpiece.set(MouthpieceLaw::Valve(ValveLaw { frequency: 180.0, quality: 8.0, reach: 3.0 }), RATE);
+        mouthpiece.breath = Breath { opening: 1.0, noise: 0.2, ..tube };
         let mut left = vec![];
         for tick in 0..60 {
             bank.sweep_to(1.0 + 0.001 * f64::from(tick), CONTROL_FRAMES);
-            (valve.breath.pressure, valve.breath.passed) = ([1.0, 0.01], 0);
+            (mouthpiece.breath.pressure, mouthpiece.breath.passed) = ([1.0, 0.01], 0);
             for frames in pieces {
-                left.extend_from_slice(bank.render_played(None, Some(Player::Breath(&mut valve)), *frames)[0]);
-                valve.breath.passed += *frames as u32;
+                left.extend_from_slice(bank.render_played(None, Some(Player::Breath(&mut mouthpiece)), *frames)[0]);
+                mouthpiece.breath.passed += *frames as u32;
             }
         }
         left

@@ -1,14 +1,14 @@
-//! The breath of a voice: the pressure in the mouth, the valve, and what the tube's modes take and give.
+//! The breath of a voice: the pressure in the mouth, the mouthpiece, and what the tube's modes take and give.
 
 use super::line::Line;
 use super::values::StruckValues;
 use crate::dsp::cells::Cells;
-use crate::dsp::exciter::Valve;
+use crate::dsp::exciter::Mouthpiece;
 use crate::dsp::mode_bank::MAX_MODES;
 use crate::engine::controls::Controls;
 use crate::engine::gain::exciter_gain;
 use crate::params::{Param, Valve as Kind};
-use crate::sound::blown::{contact, flow, law, share};
+use crate::sound::blown::{amplitude, contact, flow, law, share};
 use libm::{exp, fabs, sqrt};
 
 /// The breath comes within 5 % of its pressure in the attack time, and leaves in this many seconds.
@@ -25,7 +25,7 @@ const NO_BREATH: f64 = 1e-4;
 /// The breath of a voice. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Blowing {
-    valve: Valve,
+    mouthpiece: Mouthpiece,
     kind: Kind,
     /// Amplitude at a pressure of 1, of a mode whose level is 1; 0 without breath.
     amplitude: f64,
@@ -48,7 +48,7 @@ pub(super) struct Blown {
 impl Blowing {
     /// No breath.
     pub(super) const OFF: Self = Self {
-        valve: Valve::REST,
+        mouthpiece: Mouthpiece::REST,
         kind: Kind::Reed,
         amplitude: 0.0,
         attack: 0.0,
@@ -60,13 +60,13 @@ impl Blowing {
 
     /// Reads the breath's parameters at a strike. `key` is the strike's stream of random numbers, `count` that of unison voices.
     pub(super) fn strike(&mut self, values: &StruckValues, key: u64, count: usize) {
-        self.amplitude = exciter_gain(values.get(Param::BreathLevel)) / sqrt(count as f64);
         self.kind = values.instrument.knobs.choice(Param::BreathValve);
+        self.amplitude = amplitude(self.kind, exciter_gain(values.get(Param::BreathLevel))) / sqrt(count as f64);
         (self.attack, self.tongue) = (values.get(Param::BreathAttack), TONGUE * values.share(Param::BreathTongue));
-        (self.valve.key, self.is_placed) = (key, false);
+        (self.mouthpiece.key, self.is_placed) = (key, false);
     }
 
-    /// The tube has another length, or its modes have got other contacts: they need the valve's again.
+    /// The tube has another length, or its modes have got other contacts: they need the mouthpiece's again.
     pub(super) fn lift(&mut self) {
         self.is_placed = false;
     }
@@ -81,7 +81,7 @@ impl Blowing {
         self.amplitude > 0.0
     }
 
-    /// Starts a ramp of the pressure that ends in `frames` frames, and sets the valve. Without `values`, a breath whose modes have
+    /// Starts a ramp of the pressure that ends in `frames` frames, and sets the mouthpiece. Without `values`, a breath whose modes have
     /// no contacts yet does not start.
     pub(super) fn control(
         &mut self,
@@ -110,10 +110,10 @@ impl Blowing {
             self.reached = 0.0;
         }
         self.pressure.aim(self.reached as f32, frames);
-        self.valve.set(law(self.kind, controls.breath_lip, frequency), sample_rate);
-        self.valve.breath.opening = flow(controls.breath_opening) as f32;
-        self.valve.breath.per_frame = (frequency / sample_rate) as f32;
-        self.valve.breath.noise = controls.breath_noise;
+        self.mouthpiece.set(law(self.kind, controls.breath_lip, self.reached, frequency), sample_rate);
+        self.mouthpiece.breath.opening = flow(controls.breath_opening) as f32;
+        self.mouthpiece.breath.per_frame = (frequency / sample_rate) as f32;
+        self.mouthpiece.breath.noise = controls.breath_noise;
     }
 
     /// Sets what the modes take and give.
@@ -125,17 +125,17 @@ impl Blowing {
         for (m, (mode, (ratio, ..))) in values.modes().as_slice().iter().zip(bank.modes()).take(MAX_MODES).enumerate() {
             (ratios[m], shares[m]) = (ratio, share(mode, frequency * ratio, sample_rate));
         }
-        self.valve.breath.shares = shares.iter().sum::<f64>() as f32;
+        self.mouthpiece.breath.shares = shares.iter().sum::<f64>() as f32;
         bank.set_contacts(|m| contact(shares[m], [levels[m], loudest], ratios[m], self.amplitude));
     }
 
     /// The breath of the next frames, if there is any.
-    pub(super) fn blow(&mut self, frames: usize) -> Option<&mut Valve> {
+    pub(super) fn blow(&mut self, frames: usize) -> Option<&mut Mouthpiece> {
         if !self.is_on() {
             return None;
         }
-        (self.valve.breath.pressure, self.valve.breath.passed) = self.pressure.parts();
+        (self.mouthpiece.breath.pressure, self.mouthpiece.breath.passed) = self.pressure.parts();
         self.pressure.advance(frames);
-        Some(&mut self.valve)
+        Some(&mut self.mouthpiece)
     }
 }

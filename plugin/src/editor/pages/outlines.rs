@@ -16,8 +16,10 @@ const POINTS: usize = 40;
 const CONTACT: f64 = 0.012;
 /// Exponent of a mallet's mass in its contact time, by Hertz's law.
 const MASS_POWER: f64 = 0.4;
-/// The highest pressure in the picture of a valve, and the time that a loose mass is watched, in seconds.
+/// The highest pressure in the picture of a valve, the greatest bend of a jet in half widths, and the time that a loose mass is
+/// watched, in seconds.
 const PRESSURE: f64 = 2.0;
+const BEND: f64 = 6.0;
 const FLIGHT: f64 = 0.1;
 /// How many halvings a fall by 60 dB has.
 const HALVINGS: f64 = 3.0 * LOG2_10;
@@ -134,8 +136,14 @@ fn bow(force: f64, width: f64) -> Vec<Vec2> {
     })
 }
 
-/// The flow through a valve against the pressure before it, up to `PRESSURE`; the mark is at the pressure that is set.
+/// The flow through a valve against the pressure before it, up to `PRESSURE`, with a mark at the pressure that is set; or of a jet into
+/// a tube, against its bend.
 fn breath(valve: Valve, opening: f64, pressure: f64) -> Outline {
+    if valve == Valve::Jet {
+        let most = curves::flow(valve, 1.0, BEND);
+        let line = plotted(2 * POINTS, |x| curves::flow(valve, opening, BEND * (2.0 * x - 1.0)) / most);
+        return above(line, "flow by bend");
+    }
     let points = |opening: f64| plotted(2 * POINTS, |x| curves::flow(valve, opening, PRESSURE * x));
     let most = points(1.0).into_iter().map(|point| point.y).fold(0.0, f32::max);
     let line = points(opening).into_iter().map(|point| vec2(point.x, point.y / most)).collect();
