@@ -65,7 +65,7 @@ pub(crate) struct Link {
     /// To the standalone program's window: a request to close.
     closing: AtomicBool,
     /// To the standalone program's window: messages about devices and ports, the oldest first.
-    messages: Mutex<Vec<String>>,
+    messages: Mutex<Vec<Result<String, String>>>,
     /// Between the standalone program and its window: the devices and ports.
     pub(crate) devices: DeviceLink,
 }
@@ -102,23 +102,26 @@ impl Link {
         self.closing.load(Relaxed)
     }
 
-    /// Sends the window a message for the user. Not for the audio thread.
+    /// Sends the window a message for the user: what was done, or what went wrong. Not for the audio thread.
     #[cfg(feature = "standalone")]
-    pub(crate) fn report(&self, message: String) {
+    pub(crate) fn report(&self, message: Result<String, String>) {
         let mut waiting = lock(&self.messages);
         // If nothing reads the messages, the newest ones are kept.
         if waiting.len() == MESSAGES {
-            waiting.remove(0);
+            drop(waiting.remove(0));
         }
         waiting.push(message);
         drop(waiting);
         self.repaint.request_repaint();
     }
 
-    /// The messages since the last call, joined to one line.
-    pub(crate) fn take_messages(&self) -> Option<String> {
+    /// The messages since the last call, joined to one line. Something went wrong if any of them says so.
+    pub(crate) fn take_messages(&self) -> Option<Result<String, String>> {
         let messages = std::mem::take(&mut *lock(&self.messages));
-        (!messages.is_empty()).then(|| messages.join("; "))
+        let is_ok = messages.iter().all(Result::is_ok);
+        let line =
+            messages.into_iter().map(|message| message.unwrap_or_else(|error| error)).collect::<Vec<_>>().join("; ");
+        (!line.is_empty()).then_some(if is_ok { Ok(line) } else { Err(line) })
     }
 
     /// The sample rate in Hz; 0 before the first one is known.
@@ -157,11 +160,14 @@ mod tests {
     #[test]
     fn messages_wait_for_the_window_and_none_replaces_another() {
         let link = Link::default();
-        link.report("one".to_owned());
-        link.report("two".to_owned());
-        assert_eq!((link.take_messages(), link.take_messages()), (Some("one; two".to_owned()), None));
-        (0..2 * MESSAGES).for_each(|line| link.report(line.to_string()));
-        let messages = link.take_messages().unwrap();
+        link.report(Ok("one".to_owned()));
+        link.report(Ok("two".to_owned()));
+        assert_eq!((link.take_messages(), link.take_messages()), (Some(Ok("one; two".to_owned())), None));
+        link.report(Err("bad".to_owned()));
+        link.report(Ok("good".to_owned()));
+        assert_eq!(link.take_messages(), Some(Err("bad; good".to_owned())));
+        (0..2 * MESSAGES).for_each(|line| link.report(Ok(line.to_string())));
+        let messages = link.take_messages().unwrap().unwrap();
         assert!(messages.starts_with("16; 17") && messages.ends_with("; 31"), "the newest: {messages}");
     }
 }

@@ -9,10 +9,18 @@ pub(super) fn print(line: &str) {
     let _ = writeln!(std::io::stderr(), "{}", printable(line));
 }
 
-/// Shows messages on stderr and in the window.
+/// Shows on stderr and in the window what went wrong.
 pub(super) fn report(params: &SprungParams, messages: impl IntoIterator<Item = String>) {
-    for line in messages {
-        print(&format!("sprung: {line}"));
-        params.link().report(line);
-    }
+    messages.into_iter().for_each(|line| show(params, Err(line)));
+}
+
+/// Shows on stderr and in the window what was done.
+pub(super) fn tell(params: &SprungParams, messages: impl IntoIterator<Item = String>) {
+    messages.into_iter().for_each(|line| show(params, Ok(line)));
+}
+
+fn show(params: &SprungParams, message: Result<String, String>) {
+    let (Ok(line) | Err(line)) = &message;
+    print(&format!("sprung: {line}"));
+    params.link().report(message);
 }

@@ -1,7 +1,7 @@
 //! Follows devices and ports, and saves the state, while the window is open.
 
 use super::chosen::{choice, plain};
-use super::messages::{print, report};
+use super::messages::{print, report, tell};
 use super::player::WindowPlayer;
 use super::store::Store;
 use crate::devices::{Chosen, Devices, Output};
@@ -45,8 +45,15 @@ impl Supervisor {
         // A problem with the file is reported once.
         let mut reported = None;
         while !self.is_closed.load(Relaxed) {
-            report(&self.params, self.session.poll());
-            report(&self.params, midi.iter_mut().flat_map(MidiIn::poll).collect::<Vec<_>>());
+            // Without a stream the device is gone, with one it has come back.
+            let news = self.session.poll();
+            if self.session.is_playing() {
+                tell(&self.params, news)
+            } else {
+                report(&self.params, news)
+            }
+            // Ports come and go, and the computer's keys play as well.
+            tell(&self.params, midi.iter_mut().flat_map(MidiIn::poll).collect::<Vec<_>>());
             let params = self.params.clone();
             let devices = &params.link().devices;
             if let Some(request) = devices.take_request() {
@@ -99,17 +106,12 @@ impl Supervisor {
         let was_jack = self.session.is_jack();
         if choice(&request) != choice(&self.chosen) {
             let changed = self.session.change(choice(&request), WindowPlayer::set_sample_rate);
-            let message = match &changed {
-                Ok(()) => format!("playing on {}", self.session.description()),
-                Err(error) if self.session.is_playing() => {
-                    format!("{}; still on {}", plain(error), self.session.description())
-                }
-                Err(error) => format!("{}; waiting for {}", plain(error), self.session.description()),
-            };
-            report(&self.params, Some(message));
-            if changed.is_err() {
-                return;
+            let now = self.session.description();
+            if let Err(error) = &changed {
+                let then = if self.session.is_playing() { "still on" } else { "waiting for" };
+                return report(&self.params, Some(format!("{}; {then} {now}", plain(error))));
             }
+            tell(&self.params, Some(format!("playing on {now}")));
         }
         let is_other_system = was_jack != self.session.is_jack();
         // The ports have other names on the other system.

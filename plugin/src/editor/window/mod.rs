@@ -334,7 +334,7 @@ impl Window {
         if !ui.input(|input| input.pointer.any_down()) {
             controls.release();
         }
-        if let Some(messages) = learnt.or_else(|| params.link().take_messages().map(Err)).or(played.map(Ok)) {
+        if let Some(messages) = learnt.or_else(|| params.link().take_messages()).or(played.map(Ok)) {
             self.message = messages;
         }
         let complaint = controls.interaction.typing.as_ref().and_then(|typing| typing.complaint.clone());
