@@ -344,7 +344,10 @@ impl Window {
         let sample_rate = params.link().sample_rate();
         let load = self.load.share(now, telemetry, sample_rate);
         let engine = status::engine(voices, load, sample_rate);
-        self.line.show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
+        let waits = self.interaction.learning.is_some() || self.interaction.binding.is_some();
+        if self.line.show(ui, layout.status, hint.as_ref(), &message, &engine, palette) && !waits {
+            self.message = Ok(String::new());
+        }
         if let Some(request) = request.or(by_key) {
             self.carry_out(request, ui, host);
         }

@@ -12,6 +12,8 @@ use std::time::Duration;
 const INTERVAL: f64 = 0.5;
 /// Seconds for which the pointer rests before a hint stands beside it.
 const REST: f32 = 0.7;
+/// Seconds for which a message stays.
+const STAYS: f64 = 8.0;
 /// The largest width of such a hint.
 const WIDEST: f32 = 280.0;
 
@@ -62,15 +64,18 @@ pub(super) fn summary(complaints: &[String]) -> Option<String> {
     Some(format!("Not all of the project’s state was understood: {first}{rest}"))
 }
 
-/// The line. A message stays until the next one; a hint hides it while the pointer is over the widget, but only once the
-/// pointer has moved: what a click or a key has led to must be seen where the pointer rests.
+/// The line. A message stays for a while, or until the next one; a hint hides it while the pointer is over the widget, but only
+/// once the pointer has moved: what a click or a key has led to must be seen where the pointer rests.
 #[derive(Default)]
 pub(super) struct StatusLine {
     message: Option<Said>,
+    /// When the message was first shown.
+    since: f64,
     is_unread: bool,
 }
 
 impl StatusLine {
+    /// Shows the line. Returns whether the message has stayed long enough.
     pub(super) fn show(
         &mut self,
         ui: &Ui,
@@ -79,11 +84,12 @@ impl StatusLine {
         message: &Said,
         right: &str,
         palette: &Palette,
-    ) {
+    ) -> bool {
+        let now = ui.input(|input| input.time);
         let has_moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO || input.pointer.any_pressed());
         self.is_unread &= !has_moved;
         if self.message.as_ref() != Some(message) {
-            self.message = Some(message.clone());
+            (self.message, self.since) = (Some(message.clone()), now);
             self.is_unread = !text_of(message).is_empty();
         }
         let hint = hint.filter(|_| !self.is_unread);
@@ -91,6 +97,11 @@ impl StatusLine {
         if let Some(hint) = hint {
             show_at_pointer(ui, hint);
         }
+        let left = self.since + STAYS - now;
+        if left > 0.0 && !text_of(message).is_empty() {
+            ui.ctx().request_repaint_after(Duration::from_secs_f64(left));
+        }
+        left <= 0.0
     }
 }
 
