@@ -53,6 +53,7 @@ mod widgets;
 mod window;
 
 use crate::params::SprungParams;
+use crate::state::View;
 use egui_baseview::GraphicsConfig;
 use host::extent;
 use nice_plug_core::context::gui::GuiContext;
@@ -73,6 +74,15 @@ pub struct SprungEditor {
 impl SprungEditor {
     pub(crate) fn new(params: Arc<SprungParams>) -> Self {
         Self { params }
+    }
+
+    /// The view, once it fits on the screen if no window is open.
+    fn fit(&self) -> View {
+        let extent = self.params.extent();
+        if !extent.is_open() {
+            self.params.set_view(|view| *view = extent::fitted(*view, extent.screen()));
+        }
+        self.params.view()
     }
 }
 
@@ -98,11 +108,11 @@ impl Editor for SprungEditor {
         gui_context: GuiContext,
         host: Option<HostMethods>,
     ) -> Result<SpawnedEditor<Self::Handle>, Box<dyn Error>> {
-        let view = self.params.view();
-        let [width, height] = view.size.map(|side| side as f32);
-        let state = EguiEditorState::from_size(LogicalSize { width, height }, extent::factor(view));
         // The size that the host was told is at this scale, so the window must open with it too.
         let scale_factor = self.params.extent().set_scale(fallback_scale_factor);
+        let view = self.fit();
+        let [width, height] = view.size.map(|side| side as f32);
+        let state = EguiEditorState::from_size(LogicalSize { width, height }, extent::factor(view));
         // The window has no gradients that would need dithering, which costs time for each pixel.
         let graphics = GraphicsConfig { dithering: false, ..GraphicsConfig::default() };
         let settings = EguiNiceSettings::new().with_tile("Sprung").with_resize_hint(self.resize_hint());
@@ -118,7 +128,7 @@ impl Editor for SprungEditor {
     }
 
     fn size(&self) -> NativeSize<u32> {
-        self.params.extent().size(self.params.view())
+        self.params.extent().size(self.fit())
     }
 
     fn scale_factor_suggested(&self, scale_factor: f64) {

@@ -2,6 +2,7 @@
 
 #[cfg(target_os = "linux")]
 use super::x11;
+use crate::editor::theme::{LEAST_SIZE, ZOOM_RANGE};
 use crate::lock::lock;
 use crate::state::View;
 use nice_plug_core::editor::dpi::{LogicalSize, NativeSize, PhysicalSize, Size};
@@ -25,7 +26,27 @@ pub(crate) fn factor(view: View) -> f32 {
     view.zoom as f32 / 100.0
 }
 
+/// The view with the greatest zoom up to its own at which the smallest window fits on a screen of this size in points, and with
+/// the greatest size up to its own that fits there.
+pub(crate) fn fitted(mut view: View, screen: Option<[f64; 2]>) -> View {
+    let Some(screen) = screen else { return view };
+    let most = |place: usize| (100.0 * screen[place] / f64::from(LEAST_SIZE[place])) as u32;
+    view.zoom = view.zoom.min(most(0)).min(most(1)).max(ZOOM_RANGE[0]);
+    let factor = f64::from(factor(view));
+    for (side, most) in view.size.iter_mut().zip(screen) {
+        *side = (*side).min((most / factor) as u32);
+    }
+    view
+}
+
 impl Extent {
+    /// Width and height of the screen in points, if they are known.
+    pub(crate) fn screen(&self) -> Option<[f64; 2]> {
+        let (size, own) = of_screen();
+        let scale = own.or(self.known().scale).unwrap_or(1.0);
+        size.map(|size| size.map(|side| f64::from(side) / scale))
+    }
+
     fn known(&self) -> MutexGuard<'_, Known> {
         lock(&self.0)
     }
@@ -58,17 +79,36 @@ impl Extent {
         match known.open {
             Some(open) => NativeSize::from_size(Size::Physical(open), known.scale.unwrap_or(1.0)),
             None => {
-                let scale = of_screen().or(known.scale).unwrap_or(1.0);
+                let scale = of_screen().1.or(known.scale).unwrap_or(1.0);
                 NativeSize::from_size(Size::Logical(LogicalSize { width, height }), scale)
             }
         }
     }
 }
 
-/// The scale that the screen says of itself.
-fn of_screen() -> Option<f64> {
+/// Width and height of the largest screen in pixels, and the scale that it says of itself.
+fn of_screen() -> (Option<[u32; 2]>, Option<f64>) {
     #[cfg(target_os = "linux")]
-    return x11::scale();
+    return x11::screen().map_or((None, None), |(size, scale)| (Some(size), scale));
     #[cfg(not(target_os = "linux"))]
-    None
+    (None, None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::VIEW;
+
+    #[test]
+    fn a_window_is_never_larger_than_the_screen() {
+        let zoomed = |zoom, screen| {
+            let View { zoom, size, .. } = fitted(View { zoom, ..VIEW }, screen);
+            (zoom, size)
+        };
+        assert_eq!(zoomed(300, None), (300, VIEW.size));
+        assert_eq!(zoomed(200, Some([2560.0, 1440.0])), (200, [1100, 700]));
+        assert_eq!(zoomed(300, Some([2560.0, 1440.0])), (300, [853, 480]));
+        assert_eq!(zoomed(300, Some([1280.0, 800.0])), (200, [640, 400]));
+        assert_eq!(zoomed(300, Some([100.0, 100.0])).0, ZOOM_RANGE[0], "some zoom remains");
+    }
 }

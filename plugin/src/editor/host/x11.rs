@@ -3,6 +3,8 @@
 use nice_plug_egui::baseview::WindowContext;
 use raw_window_handle::{HasWindowHandle as _, RawWindowHandle};
 use x11rb::CURRENT_TIME;
+use x11rb::connection::Connection as _;
+use x11rb::protocol::randr::ConnectionExt as _;
 use x11rb::protocol::xproto::{ConnectionExt as _, InputFocus};
 use x11rb::resource_manager::new_from_default;
 use x11rb::rust_connection::RustConnection;
@@ -47,12 +49,17 @@ impl Display {
     }
 }
 
-/// The scale that the screen says of itself, as the library that makes the window reads it.
-pub(super) fn scale() -> Option<f64> {
-    let (connection, _) = x11rb::connect(None).ok()?;
-    let resources = new_from_default(&connection).ok()?;
-    let density: u32 = resources.get_value("Xft.dpi", "").ok()??;
-    Some(f64::from(density) / 96.0)
+/// Width and height of the largest monitor in pixels, and the scale that the screen says of itself, as the library that makes the
+/// window reads it.
+pub(super) fn screen() -> Option<([u32; 2], Option<f64>)> {
+    let (connection, number) = x11rb::connect(None).ok()?;
+    let screen = &connection.setup().roots[number];
+    let monitors = connection.randr_get_monitors(screen.root, true).ok().and_then(|asked| asked.reply().ok());
+    let sizes = monitors.into_iter().flat_map(|found| found.monitors).map(|monitor| [monitor.width, monitor.height]);
+    let largest = sizes.max_by_key(|[width, height]| u32::from(*width) * u32::from(*height));
+    let size = largest.unwrap_or([screen.width_in_pixels, screen.height_in_pixels]).map(u32::from);
+    let density = || new_from_default(&connection).ok()?.get_value::<u32>("Xft.dpi", "").ok()?;
+    Some((size, density().map(|density| f64::from(density) / 96.0)))
 }
 
 /// The window's X11 id.

@@ -59,6 +59,11 @@ impl Default for Pages {
 }
 
 impl Pages {
+    /// Selects the page of the devices.
+    pub(super) fn show_devices(&mut self) {
+        self.part = path::DEVICES;
+    }
+
     /// The page of the manual that explains the present page.
     pub(super) fn topic(&self) -> &'static str {
         TOPICS[self.part.1]

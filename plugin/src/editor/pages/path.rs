@@ -11,7 +11,7 @@ use egui::{Align2, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, po
 pub(super) type Part = (&'static str, usize);
 
 /// The page of the devices, which only the standalone program has.
-const DEVICES: Part = ("Devices", 6);
+pub(super) const DEVICES: Part = ("Devices", 6);
 
 /// Parts by panel and column, in the order in which the sound takes its way through them.
 const PATH: [&[&[Part]]; 4] = [

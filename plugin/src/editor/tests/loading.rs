@@ -94,9 +94,9 @@ fn the_way_back_from_a_zoom_stays_within_reach_in_the_smallest_windows() {
     // At 300 % in a host that leaves the window as it is.
     for size in [[367, 233], [320, 320]] {
         let mut stage = stage("Marimba", size, 1.0, Theme::Dark);
-        let view = stage.harness.get_by_label("View").rect();
+        let view = stage.harness.get_by_label("Menu").rect();
         assert!(view.left() >= 0.0 && view.right() <= size[0] as f32, "{size:?}: {view:?}");
-        stage.button("View");
+        stage.button("Menu");
         stage.button("100 %");
         assert_eq!(stage.params.view().zoom, 100);
     }

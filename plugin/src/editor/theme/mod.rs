@@ -218,7 +218,7 @@ impl Theme {
 /// Size of a new window at 100 %.
 pub(crate) const SIZE: [u32; 2] = [1100, 700];
 /// Smallest width and height, at 100 %, at which the window can be used.
-pub(super) const LEAST_SIZE: [u32; 2] = [640, 400];
+pub(crate) const LEAST_SIZE: [u32; 2] = [640, 400];
 /// Smallest and largest scale in per cent.
 pub(crate) const ZOOM_RANGE: [u32; 2] = [75, 300];
 /// Scales that the window offers, in per cent.

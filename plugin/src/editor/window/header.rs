@@ -3,12 +3,14 @@
 use super::meter;
 use super::variation::{self, VariationRequest};
 use crate::editor::controls::{Controls, Hint};
+use crate::editor::host::extent;
 use crate::editor::routes::carry;
-use crate::editor::theme::{BRAND, GAP, Palette, SMALL, TEXT, Theme, ZOOMS};
+use crate::editor::theme::{BRAND, GAP, SMALL, TEXT, Theme, ZOOMS};
 use crate::editor::widgets::buttons::{Look, button, tab};
 use crate::editor::widgets::text::{line, width};
 use crate::state::View;
 use egui::{Align2, Id, Popup, PopupCloseBehavior, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use nice_plug_core::context::PluginApi;
 use std::collections::BTreeSet;
 
 /// What the window shows.
@@ -50,6 +52,10 @@ pub(super) enum Request {
     Copy,
     Zoom(u32),
     Theme(Theme),
+    /// The manual's page about what is shown.
+    Manual,
+    /// The page of the program's devices.
+    Devices,
     Variation(VariationRequest),
 }
 
@@ -63,6 +69,8 @@ pub(super) struct Header<'a> {
     /// Whether the second version is shown.
     pub(super) is_b: bool,
     pub(super) view: View,
+    /// Width and height of the screen at 100 %, if they are known.
+    pub(super) screen: Option<[f64; 2]>,
     /// Sections that variations leave as they are.
     pub(super) locked: &'a BTreeSet<&'static str>,
     /// Levels of left and right, as shares of the meter's length.
@@ -147,7 +155,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
     // A host that refuses a larger window leaves little room at a large zoom: the way back stays within reach.
     let view = next(52.0);
     let view = view.translate(vec2((rect.right() - view.right()).min(0.0), 0.0));
-    request = request.or(view_menu(ui, view, header.view, palette));
+    request = request.or(view_menu(ui, view, header, controls));
     let meter = Rect::from_min_max(pos2(left + GAP, rect.top()), rect.max);
     if meter.width() >= 40.0 {
         let meter = meter.with_min_x(meter.left().max(meter.right() - 150.0));
@@ -193,23 +201,34 @@ fn name_field(ui: &Ui, rect: Rect, header: &Header, is_narrow: bool, controls: &
     request
 }
 
-/// The menu of scales and themes.
-fn view_menu(ui: &Ui, rect: Rect, view: View, palette: &Palette) -> Option<Request> {
-    let response = button(ui, rect, &format!("{} %", view.zoom), "View", Look::Plain, palette);
+/// The menu of scales, as far as the smallest window at them fits on the screen, themes, and pages about the window itself.
+fn view_menu(ui: &Ui, rect: Rect, header: &Header, controls: &mut Controls) -> Option<Request> {
+    let (view, is_alone) = (header.view, controls.host.plugin_api() == PluginApi::Standalone);
+    let response = button(ui, rect, "≡", "Menu", Look::Plain, controls.palette);
+    if response.hovered() {
+        *controls.hint =
+            Hint::new(format!("Menu   {} %", view.zoom), "Size and colours of the window, and the manual.");
+    }
+    let fits = |zoom: &u32| extent::fitted(View { zoom: *zoom, ..view }, header.screen).zoom == *zoom;
+    let zooms = ZOOMS.into_iter().filter(fits);
+    let zooms = zooms.map(|zoom| (format!("{zoom} %"), zoom == view.zoom, Request::Zoom(zoom))).collect();
+    let themes = Theme::ALL.map(|theme| (theme.name().to_owned(), theme == view.theme, Request::Theme(theme)));
+    let pages =
+        [("Manual", Request::Manual), ("Devices", Request::Devices)].into_iter().take(1 + usize::from(is_alone));
+    let pages = pages.map(|(name, request)| (name.to_owned(), false, request)).collect();
     let mut request = None;
     Popup::menu(&response).show(|ui| {
         ui.set_min_width(120.0);
-        for zoom in ZOOMS {
-            if ui.selectable_label(zoom == view.zoom, format!("{zoom} %")).clicked() {
-                request = Some(Request::Zoom(zoom));
-                ui.close();
+        let groups: [Vec<(String, bool, Request)>; 3] = [zooms, themes.to_vec(), pages];
+        for (place, group) in groups.into_iter().enumerate() {
+            if place > 0 {
+                ui.separator();
             }
-        }
-        ui.separator();
-        for theme in Theme::ALL {
-            if ui.selectable_label(theme == view.theme, theme.name()).clicked() {
-                request = Some(Request::Theme(theme));
-                ui.close();
+            for (name, is_now, wanted) in group {
+                if ui.selectable_label(is_now, name).clicked() {
+                    request = Some(wanted);
+                    ui.close();
+                }
             }
         }
     });

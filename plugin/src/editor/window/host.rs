@@ -4,9 +4,10 @@ use super::Window;
 use crate::editor::binding;
 #[cfg(target_os = "linux")]
 use crate::editor::host::accessibility;
+use crate::editor::host::extent;
 use crate::editor::theme::{LEAST_SIZE, Theme};
 use crate::state::{View, WINDOW_RANGE};
-use egui::{Rgba, Ui};
+use egui::{Rgba, Ui, ViewportCommand, vec2};
 use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
 use nice_plug_egui::baseview::{HandlerError, WindowSize};
@@ -20,6 +21,7 @@ impl NiceEguiApp for Window {
         accessibility::connect(&context, self.params.link().repaint.clone());
         self.open(host);
         self.params.extent().set(frame.baseview_window().size());
+        self.screen = self.params.extent().screen();
         self.context = Some(context);
         Ok(())
     }
@@ -59,6 +61,13 @@ impl NiceEguiApp for Window {
 
     fn zoom_factor_changed(&mut self, zoom: f32) {
         self.zoom = zoom;
+        let view = self.params.view();
+        let fitted = extent::fitted(view, self.screen);
+        if let Some(context) = self.context.as_ref().filter(|_| fitted != view) {
+            let [width, height] = fitted.size.map(|side| side as f32);
+            context.send_viewport_cmd(ViewportCommand::InnerSize(vec2(width, height)));
+            context.request_repaint();
+        }
     }
 }
 

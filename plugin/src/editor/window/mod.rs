@@ -29,7 +29,7 @@ use crate::editor::picker::{Picked, Picker};
 use crate::editor::play::PlayPage;
 use crate::editor::routes::{carry, learn};
 use crate::editor::theme::layout::Layout;
-use crate::editor::theme::{Theme, install_fonts};
+use crate::editor::theme::{Theme, ZOOMS, install_fonts};
 use crate::params::SprungParams;
 use crate::state::State;
 use egui::{Event, Key, Modifiers, Ui};
@@ -92,6 +92,8 @@ pub(super) struct Window {
     /// The context of a real window, and the zoom that it has, or will have with the first pass.
     context: Option<egui::Context>,
     zoom: f32,
+    /// Width and height of the screen at 100 %, if they are known.
+    screen: Option<[f64; 2]>,
     /// The time of the last pass.
     now: f64,
     /// How many states the host had loaded when the window last looked.
@@ -139,6 +141,7 @@ impl Window {
             is_b: false,
             context: None,
             zoom,
+            screen: None,
             now: 0.0,
             loads,
             applied: None,
@@ -166,6 +169,8 @@ impl Window {
         let view = params.view();
         if self.applied.is_none() {
             install_fonts(ui.ctx());
+            // Its keys would change the zoom and not the state.
+            ui.ctx().options_mut(|options| options.zoom_with_keyboard = false);
         }
         if self.applied != Some(view.theme) {
             self.applied = Some(view.theme);
@@ -212,6 +217,7 @@ impl Window {
             face: self.face,
             is_b: self.is_b,
             view,
+            screen: self.screen,
             locked: &self.locked,
             levels,
             lowered: if is_silent { 0.0 } else { snapshot.lowered },
@@ -321,7 +327,7 @@ impl Window {
         // In a plugin, the computer's keyboard belongs to the host.
         let is_alone = host.plugin_api() == PluginApi::Standalone;
         let is_typing = ui.ctx().egui_wants_keyboard_input();
-        let by_key = (is_alone && !is_typing).then(|| asked_by_key(self.over, ui)).flatten();
+        let by_key = (is_alone && !is_typing).then(|| asked_by_key(self.over, view.zoom, ui)).flatten();
         let played = is_alone.then(|| self.computer_keyboard.follow(ui, params.link())).flatten();
         let bound = binding::follow(ui, self.browser.library(), &mut controls);
         let learnt = bound.or_else(|| learn::follow(ui, &mut controls));
@@ -371,12 +377,19 @@ impl Window {
 }
 
 /// What the computer's keys ask for, in the program alone.
-fn asked_by_key(over: Option<Over>, ui: &Ui) -> Option<Request> {
+fn asked_by_key(over: Option<Over>, zoom: u32, ui: &Ui) -> Option<Request> {
+    let larger = ZOOMS.into_iter().find(|other| *other > zoom).unwrap_or(zoom);
+    let smaller = ZOOMS.into_iter().rev().find(|other| *other < zoom).unwrap_or(zoom);
     // With Shift first: a shortcut without it is also found with it.
     let shortcuts = [
         (Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, Request::Redo),
         (Modifiers::COMMAND, Key::Y, Request::Redo),
         (Modifiers::COMMAND, Key::Z, Request::Undo),
+        (Modifiers::COMMAND, Key::Num0, Request::Zoom(100)),
+        (Modifiers::COMMAND, Key::Plus, Request::Zoom(larger)),
+        (Modifiers::COMMAND, Key::Equals, Request::Zoom(larger)),
+        (Modifiers::COMMAND, Key::Minus, Request::Zoom(smaller)),
+        (Modifiers::NONE, Key::F1, Request::Manual),
         (Modifiers::NONE, Key::Slash, Request::Browse),
     ];
     let found =

@@ -1,6 +1,6 @@
 //! The user's requests, carried out.
 
-use super::header::Request;
+use super::header::{Face, Request};
 use super::variation::{Variation, VariationRequest};
 use super::{Over, Window};
 use crate::editor::browser::Aim;
@@ -8,6 +8,7 @@ use crate::editor::controls::files::load;
 use crate::editor::controls::history::{History, restore};
 use crate::editor::host::extent;
 use crate::params::SprungParams;
+use crate::state::View;
 use egui::Ui;
 use nice_plug_core::context::gui::GuiContext;
 use sprung::preset::{Playable, Preset};
@@ -62,8 +63,22 @@ impl Window {
             Request::Undo => self.go_back(History::undo, host),
             Request::Redo => self.go_back(History::redo, host),
             Request::Zoom(zoom) => {
-                self.params.set_view(|view| view.zoom = zoom);
+                self.params.set_view(|view| view.zoom = extent::fitted(View { zoom, ..*view }, self.screen).zoom);
                 ui.ctx().set_zoom_factor(extent::factor(self.params.view()));
+            }
+            Request::Manual if self.over == Some(Over::Manual) => self.over = None,
+            Request::Manual => {
+                self.manual.open(match (self.over, self.face) {
+                    (None, Face::Sound) => self.pages.topic(),
+                    (None, Face::Motion) => "modulation",
+                    (None, Face::Kit) => "kits",
+                    _ => "window",
+                });
+                self.over = Some(Over::Manual);
+            }
+            Request::Devices => {
+                self.turn_to(Face::Sound);
+                self.pages.show_devices();
             }
             Request::Theme(theme) => self.params.set_view(|view| view.theme = theme),
             Request::Step(places) => self.step(places, host),
