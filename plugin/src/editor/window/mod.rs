@@ -395,7 +395,12 @@ fn asked_by_key(over: Option<Over>, zoom: u32, ui: &Ui) -> Option<Request> {
     let found =
         shortcuts.into_iter().find(|(modifiers, key, _)| ui.input_mut(|input| input.consume_key(*modifiers, *key)));
     let request = found.map(|(_, _, request)| request)?;
-    // A list of sounds that is open is not closed by it, and a path begins with it.
-    let is_taken = matches!(over, Some(Over::Browser | Over::Files)) && request == Request::Browse;
+    let is_taken = match request {
+        // A list of sounds that is open is not closed by it, and a path begins with it.
+        Request::Browse => matches!(over, Some(Over::Browser | Over::Files)),
+        // What is being dragged is no step yet: the one before would go from under it.
+        Request::Undo | Request::Redo => ui.input(|input| input.pointer.any_down()),
+        _ => false,
+    };
     (!is_taken).then_some(request)
 }
