@@ -2,8 +2,8 @@
 
 use crate::lock::lock;
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicBool, AtomicU32};
 use std::sync::{Arc, Mutex};
 
 /// The user's choices. A field without a value leaves the choice to the program.
@@ -42,6 +42,8 @@ pub(crate) struct Devices {
     pub(crate) rates: Vec<u32>,
     pub(crate) ports: Vec<String>,
     pub(crate) chosen: Chosen,
+    /// Frames of the blocks that the device takes; 0 before the first.
+    pub(crate) block: u32,
     /// The device in use with its settings, as text for the user.
     pub(crate) playing: String,
 }
@@ -53,6 +55,10 @@ pub(crate) struct DeviceLink {
     shown: Mutex<Arc<Devices>>,
     request: Mutex<Option<Chosen>>,
     is_watched: AtomicBool,
+    /// Whether the program wants the devices to be shown.
+    is_wanted: AtomicBool,
+    /// Frames of the last block.
+    block: AtomicU32,
 }
 
 impl DeviceLink {
@@ -60,6 +66,11 @@ impl DeviceLink {
     pub(crate) fn look(&self) -> Arc<Devices> {
         self.is_watched.store(true, Relaxed);
         lock(&self.shown).clone()
+    }
+
+    /// For the window: whether it is to show the devices, once.
+    pub(crate) fn is_wanted(&self) -> bool {
+        self.is_wanted.swap(false, Relaxed)
     }
 
     /// For the window: requests another choice. It is shown as chosen at once, since the next request is based on it.
@@ -79,6 +90,21 @@ impl DeviceLink {
             devices.chosen = request.clone();
         }
         *lock(&self.shown) = Arc::new(devices);
+    }
+
+    /// For the program: lets the window show the devices.
+    pub(crate) fn want(&self) {
+        self.is_wanted.store(true, Relaxed);
+    }
+
+    /// For the audio thread: the block has so many frames. Real-time safe.
+    pub(crate) fn note_block(&self, frames: u32) {
+        self.block.store(frames, Relaxed);
+    }
+
+    /// For the program: the frames of the last block.
+    pub(crate) fn block(&self) -> u32 {
+        self.block.load(Relaxed)
     }
 
     /// For the program: the window's request since the last call.

@@ -80,6 +80,13 @@ impl Link {
         consumer
     }
 
+    /// No audio thread has come of [`Link::connect`].
+    #[cfg(feature = "standalone")]
+    pub(crate) fn disconnect(&self) {
+        self.sample_rate.store(0, Relaxed);
+        *lock(&self.touches) = None;
+    }
+
     /// Plays a note. Without an audio thread nothing happens. Not for the audio thread.
     pub(crate) fn play(&self, touch: Touch) {
         if let Some(producer) = &mut *lock(&self.touches) {

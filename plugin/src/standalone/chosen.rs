@@ -1,23 +1,46 @@
 //! The choice of the device: from the command line or from the last run.
 
 use crate::devices::Chosen;
-use sprung::realtime::{Choice, Found};
+use sprung::realtime::{Choice, device};
 
-/// Finds the device of the command line, or of the last run; if the latter is not available now, the system's default.
-pub(super) fn find(given: Chosen, last: Chosen, say: impl Fn(String)) -> Result<(Chosen, Found), String> {
-    let is_given = Chosen { midi_in: None, ..given.clone() } != Chosen::default();
-    let chosen = merged(given, last);
-    let midi_in = chosen.midi_in.clone();
-    match Found::find(&choice(&chosen)) {
-        Ok(found) => Ok((chosen, found)),
-        Err(error) if is_given => Err(error.to_string()),
-        Err(error) => {
-            let chosen = Chosen { midi_in, ..Chosen::default() };
-            let found = Found::find(&Choice::default()).map_err(|error| error.to_string())?;
-            say(format!("not on the device of the last time: {}", plain(&error)));
-            Ok((chosen, found))
+/// What has come of a choice: something that plays on its device.
+pub(super) type Opened<T> = (Chosen, T);
+
+/// Opens the device of the command line, or of the last run; if that says none or it cannot be opened now, the system's default, or
+/// that of the first other sound system that has devices. A sound system or device of the command line has no substitute.
+///
+/// # Errors
+/// Why the first of them cannot be opened, if none can; with no choice if the program can wait for another one.
+pub(super) fn open_first<T>(
+    given: Chosen,
+    last: Chosen,
+    open: impl Fn(&Chosen) -> sprung::Result<T>,
+    systems: impl Fn() -> Vec<String>,
+    say: impl Fn(String),
+) -> Result<Opened<T>, (String, Option<Chosen>)> {
+    let is_given = given.host.is_some() || given.device.is_some();
+    let usual = Chosen { midi_in: given.midi_in.clone().or(last.midi_in.clone()), ..given.clone() };
+    let first = merged(given, last);
+    let error = match open(&first) {
+        Ok(opened) => return Ok((first, opened)),
+        Err(error) if is_given => return Err((error.to_string(), None)),
+        Err(error) => plain(&error),
+    };
+    let others = || systems().into_iter().map(|host| Chosen { host: Some(host), ..usual.clone() });
+    for chosen in std::iter::once(usual.clone()).filter(|usual| *usual != first).chain(others()) {
+        if let Ok(opened) = open(&chosen) {
+            say(format!("not on the usual device: {error}"));
+            return Ok((chosen, opened));
         }
     }
+    Err((error, Some(usual)))
+}
+
+/// The sound systems that have devices.
+pub(super) fn systems() -> Vec<String> {
+    let mut systems: Vec<String> = device::outputs().into_iter().map(|output| output.host).collect();
+    systems.dedup();
+    systems
 }
 
 /// The options of the command line, completed by the choice of the last run. The sample rate and block size of the last
@@ -46,12 +69,32 @@ pub(super) fn plain(error: &sprung::Error) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sprung::realtime::Found;
 
     #[test]
     fn a_device_that_was_given_must_be_there() {
         let tape = Chosen { host: Some("tape".to_owned()), ..Chosen::default() };
-        let message = find(tape, Chosen::default(), |_| unreachable!()).err().unwrap();
-        assert!(message.contains("no ‘tape’ here"), "{message}");
+        let open = |chosen: &Chosen| Found::find(&choice(chosen));
+        let failed = open_first(tape, Chosen::default(), open, || unreachable!(), |_| unreachable!()).err().unwrap();
+        assert!(failed.0.contains("no ‘tape’ here") && failed.1.is_none(), "{failed:?}");
+    }
+
+    #[test]
+    fn other_sound_systems_are_tried_if_none_was_given() {
+        let opened = |given: &Chosen, has: &[Option<&str>]| {
+            let open = |chosen: &Chosen| match has.contains(&chosen.host.as_deref()) {
+                true => Ok(()),
+                false => Err(sprung::Error::value("--device", "none; ‘--list’ shows what there is".to_owned())),
+            };
+            let systems = || ["alsa", "jack"].map(str::to_owned).to_vec();
+            open_first(given.clone(), Chosen::default(), open, systems, |_| ()).map(|(chosen, ())| chosen)
+        };
+        let blocks = Chosen { buffer: Some(64), midi_in: Some("Key".to_owned()), ..Chosen::default() };
+        assert_eq!(opened(&blocks, &[None, Some("jack")]), Ok(blocks.clone()));
+        let jack = Chosen { host: Some("jack".to_owned()), ..blocks.clone() };
+        assert_eq!(opened(&blocks, &[Some("jack")]), Ok(jack.clone()), "with the same blocks");
+        assert_eq!(opened(&blocks, &[]), Err(("device: none".to_owned(), Some(blocks))), "silent");
+        assert!(opened(&jack, &[None]).is_err_and(|(_, waits)| waits.is_none()), "it was given");
     }
 
     #[test]

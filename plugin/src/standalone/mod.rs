@@ -25,18 +25,17 @@ use crate::devices::Chosen;
 use crate::editor::SprungEditor;
 use crate::params::SprungParams;
 use crate::state::State;
-use chosen::{choice, find};
+use chosen::{open_first, systems};
 use clap::Parser;
 use host::Alone;
 use messages::{print, report};
-use player::WindowPlayer;
 use sprung::preset::Playable;
-use sprung::realtime::{LiveInputs, Session, Status, device, midi_ports};
+use sprung::realtime::{device, midi_ports};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use store::Store;
-use supervisor::Supervisor;
+use supervisor::{Opened, Supervisor};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -105,20 +104,26 @@ fn start(args: Args) -> Result<(), String> {
     report(&params, message);
     let given =
         Chosen { host: args.host, device: args.device, rate: args.rate, buffer: args.buffer, midi_in: args.midi_in };
-    let (chosen, found) = find(given, last, |message| report(&params, Some(message)))?;
-    let status = Arc::new(Status::of(params.link().telemetry.clone()));
-    let ([midi, closing], inputs) = LiveInputs::new();
-    let player = WindowPlayer::new(found.sample_rate(), params.clone(), inputs, status.clone());
-    let session = Session::start(&found, choice(&chosen), player, status).map_err(|error| error.to_string())?;
-    print(&format!("sprung: playing on {}", session.description()));
+    let open = |chosen: &Chosen| Opened::of(chosen, &params);
+    let (chosen, opened) = match open_first(given, last, open, systems, |message| report(&params, Some(message))) {
+        Ok((chosen, opened)) => (chosen, Some(opened)),
+        Err((error, None)) => return Err(error),
+        Err((error, Some(chosen))) => {
+            report(&params, Some(format!("silent until a device is chosen or plugged in: {error}")));
+            params.link().devices.want();
+            (chosen, None)
+        }
+    };
+    if let Some(opened) = &opened {
+        print(&format!("sprung: playing on {}", opened.session.description()));
+    }
     signals::catch({
         let params = params.clone();
         move || params.link().close()
     })?;
     let is_closed = Arc::new(AtomicBool::new(false));
-    let supervisor =
-        Supervisor { params: params.clone(), store, session, closing, is_closed: is_closed.clone(), chosen };
-    let supervisor = std::thread::spawn(move || supervisor.run(midi));
+    let supervisor = Supervisor { params: params.clone(), store, is_closed: is_closed.clone(), chosen };
+    let supervisor = std::thread::spawn(move || supervisor.run(opened));
     let closed = SprungEditor::new(params).run(Alone::context());
     is_closed.store(true, Relaxed);
     let ended = supervisor.join().map_err(|_| "the thread that looks after the device has failed".to_owned())?;

@@ -77,6 +77,7 @@ impl Source for WindowPlayer {
             interleave(left, right, channels, out);
         }
         self.status.note_delay(self.clock.delay());
+        self.params.link().devices.note_block(frames as u32);
         self.live.note_block(frames, moment.now.elapsed());
     }
 }

@@ -314,6 +314,7 @@ fn main() -> ExitCode {
             it_keeps_its_state_whatever_ends_it
             a_broken_state_is_set_aside
             what_is_missing_is_said
+            without_a_sound_card_it_plays_on_the_server_or_waits_for_a_device
             a_slash_searches
         }
         Program: minutes {

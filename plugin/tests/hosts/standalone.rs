@@ -207,6 +207,23 @@ pub(crate) fn a_broken_state_is_set_aside() {
     assert!(preset(&stand.state()).contains("Church Bell"));
 }
 
+pub(crate) fn without_a_sound_card_it_plays_on_the_server_or_waits_for_a_device() {
+    let mut stand = Stand::new("cards");
+    let config = stand.folder.path().join("asound.conf");
+    std::fs::write(&config, "pcm.!default { type hw\n card 9 }\n").unwrap();
+    stand.alsa = Some(config);
+    let server = stand.server.clone();
+    for is_there in [true, false] {
+        stand.server = if is_there { server.clone() } else { format!("{server}-nowhere") };
+        let (mut running, stderr) = stand.start_with(&[], &["--midi-in", "none"]);
+        let stderr = std::fs::read_to_string(stderr).unwrap();
+        assert_eq!(stderr.contains("playing on JACK"), is_there, "{stderr}");
+        assert_eq!(stderr.contains("silent until a device is chosen or plugged in: "), !is_there, "{stderr}");
+        running.interrupt();
+        assert_eq!(running.ends().code(), Some(0));
+    }
+}
+
 pub(crate) fn what_is_missing_is_said() {
     let stand = Stand::new("missing");
     let refused = |command: &mut Command, word: &str| {

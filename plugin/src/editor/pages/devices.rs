@@ -77,7 +77,11 @@ pub(super) fn show(ui: &Ui, rect: Rect, controls: &mut Controls) {
     if let Some(rate) = rates.show(ui, row(1, 0), RATE, controls) {
         request.rate = rate;
     }
-    let blocks = numbers("256 frames, or the nearest", &BLOCKS, chosen.buffer, "frames");
+    let own = match devices.block {
+        0 => "256 frames, or the nearest".to_owned(),
+        frames => format!("the usual: {frames} frames"),
+    };
+    let blocks = numbers(&own, &BLOCKS, chosen.buffer, "frames");
     if let Some(buffer) = blocks.show(ui, row(1, 1), BLOCK, controls) {
         request.buffer = buffer;
     }

@@ -23,6 +23,7 @@ fn devices() -> Devices {
         rates: vec![44_100, 48_000, 96_000],
         ports: vec!["Keystation 49:Keystation 49 MIDI 1 24:0".to_owned()],
         chosen: Chosen { buffer: Some(128), ..Chosen::default() },
+        block: 0,
         playing: "ALSA ‘default’, 48000 Hz, 2 × f32".to_owned(),
     }
 }
@@ -75,6 +76,11 @@ fn what_is_picked_is_asked_for() {
     let both = Chosen { rate: Some(96_000), midi_in: text("none"), ..before.clone() };
     assert_eq!(stage.pick_another("MIDI in", "no port"), Some(both), "a wish builds on the one before");
     assert!(stage.host.calls().is_empty(), "no parameter is concerned");
+    // The blocks that the device takes by itself.
+    stage.params.link().devices.show(Devices { chosen: Chosen::default(), block: 1024, ..devices() });
+    stage.harness.run_steps(3);
+    let own = stage.harness.get_by_role_and_label(Role::ComboBox, "Block").accesskit_node().value();
+    assert_eq!(own, text("the usual: 1024 frames"));
     // A chosen device that is not available now is still shown.
     let gone = Chosen { host: text("alsa"), device: text("hw:9"), rate: Some(22_050), ..Chosen::default() };
     stage.params.link().devices.show(Devices { chosen: gone, ..devices() });

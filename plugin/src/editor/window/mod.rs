@@ -354,7 +354,8 @@ impl Window {
         if self.line.show(ui, layout.status, hint.as_ref(), &message, &engine, palette) && !waits {
             self.message = Ok(String::new());
         }
-        if let Some(request) = request.or(by_key) {
+        let by_program = params.link().devices.is_wanted().then_some(Request::Devices);
+        if let Some(request) = request.or(by_key).or(by_program) {
             self.carry_out(request, ui, host);
         }
         if let (Some(name), Some(library)) = (self.history.take_chosen(), self.browser.library())
