@@ -4,6 +4,7 @@ pub(super) mod curves;
 mod devices;
 mod outlines;
 pub(super) mod path;
+mod scales;
 pub(super) mod sections;
 pub(super) mod tuning;
 mod voices;

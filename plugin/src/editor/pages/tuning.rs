@@ -1,11 +1,13 @@
 //! The page of the tuning: its scale, and the frequency of each key.
 
+use super::scales::SCALES;
 use crate::editor::controls::gestures::load;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint, Pick, Said};
 use crate::editor::keyboard::grid::{Cell, KeyGrid};
-use crate::editor::theme::{GAP, PADDING, SMALL, TEXT, font};
+use crate::editor::theme::{GAP, PADDING, SMALL, font};
 use crate::editor::widgets::buttons::{Look, button};
+use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::{is_entered, line, name_field, paragraph};
 use crate::files;
 use egui::{Align2, Id, Rect, TextEdit, Ui, pos2, vec2};
@@ -22,6 +24,8 @@ const SIDE: f32 = 188.0;
 const LARGEST: u64 = 1 << 20;
 /// Twelve equal steps, for a mapping without a scale of its own.
 const EQUAL: &str = "Twelve equal steps\n12\n100.\n200.\n300.\n400.\n500.\n600.\n700.\n800.\n900.\n1000.\n1100.\n2/1\n";
+
+const EQUAL_NAME: &str = "Equal temperament";
 
 /// The page's state.
 #[derive(Default)]
@@ -45,12 +49,23 @@ impl TuningPage {
         let inner = rect.shrink(PADDING);
         let side = inner.with_max_x(inner.left() + SIDE);
         let own = shown.tuning();
-        let (name, steps) = own.map_or(("Equal temperament".to_owned(), "12 steps".to_owned()), about);
-        line(ui.painter(), side.with_max_y(side.top() + 18.0), Align2::LEFT_CENTER, &name, TEXT, palette.text);
-        let mapped = if own.is_some_and(|own| own.keymap().is_some()) { ", mapped" } else { "" };
-        let second = side.with_min_y(side.top() + 18.0).with_max_y(side.top() + 34.0);
-        line(ui.painter(), second, Align2::LEFT_CENTER, &format!("{steps}{mapped}"), SMALL, palette.muted);
+        let (name, steps) = own.map_or((EQUAL_NAME.to_owned(), "12 steps".to_owned()), about);
         let mut message = None;
+        let names: Vec<&str> = std::iter::once(EQUAL_NAME).chain(SCALES.map(|(name, _)| name)).collect();
+        let known = SCALES.into_iter().find(|(_, text)| own.is_some_and(|own| own.scale() == *text));
+        let value = known.map_or(&*name, |(name, _)| name);
+        let field = Field { id: Id::unique("scale"), name: "Scale", value, is_default: own.is_none() };
+        let (response, picked) = field.show(ui, side.with_max_y(side.top() + 20.0), &names, palette);
+        if response.hovered() {
+            *controls.hint =
+                Hint::new(format!("Scale: {name}"), "One of the program’s, or one of your own by Open below.");
+        }
+        if let Some(place) = picked {
+            message = Some(tune(place.checked_sub(1).map(|place| SCALES[place].1), controls));
+        }
+        let mapped = if own.is_some_and(|own| own.keymap().is_some()) { ", mapped" } else { "" };
+        let second = side.with_min_y(side.top() + 22.0).with_max_y(side.top() + 38.0);
+        line(ui.painter(), second, Align2::LEFT_CENTER, &format!("{steps}{mapped}"), SMALL, palette.muted);
         let bottom = Rect::from_min_max(pos2(side.left(), side.bottom() - 22.0), side.max);
         let field = bottom.with_max_x(bottom.right() - 102.0);
         let edit = TextEdit::singleline(&mut self.path).id(Id::unique("scale path")).hint_text(".scl or .kbm");
@@ -66,8 +81,7 @@ impl TuningPage {
         }
         let equal = bottom.with_min_x(list.right() + 4.0);
         if button(ui, equal, "Equal", "Tune to equal temperament", look, palette).clicked() {
-            set(None, "equal temperament", controls);
-            message = Some(Ok("tuned to equal temperament".to_owned()));
+            message = Some(tune(None, controls));
         }
         let help = Rect::from_min_max(second.left_bottom() + vec2(0.0, 6.0), pos2(side.right(), field.top() - 4.0));
         if help.height() > 40.0 {
@@ -108,6 +122,15 @@ fn about(own: &OwnTuning) -> (String, String) {
     let mut lines = own.scale().lines().filter(|line| !line.starts_with('!')).map(str::trim);
     let name = lines.next().filter(|name| !name.is_empty()).unwrap_or("A scale without a name");
     (name.to_owned(), format!("{} steps", lines.next().unwrap_or_default()))
+}
+
+/// Tunes the sound to a scale without a mapping, or to equal temperament. Returns a message.
+fn tune(scale: Option<&str>, controls: &mut Controls) -> Said {
+    let own = scale.map(|scale| OwnTuning::from_scala(scale.to_owned(), None)).transpose();
+    let own = own.map_err(|error| error.to_string())?;
+    let name = own.as_ref().map_or("equal temperament".to_owned(), |own| about(own).0);
+    set(own, &format!("tuning {name}"), controls);
+    Ok(format!("tuned to {name}"))
 }
 
 /// Tunes the sound by a scale or mapping file. Returns a message.

@@ -162,9 +162,13 @@ fn scales_and_mappings_are_dropped_undone_and_complained_about() {
     band.drop_file(Path::new("/nowhere/a.kbm"));
     band.drop_file(Path::new("/nowhere/a.txt"));
     assert!(band.stage.params.state() == mapped);
+    // Scales of the project bring no mapping along.
+    band.click(Role::ComboBox, "Scale");
+    band.click(Role::Button, "Pythagorean");
+    assert!((semitones(&band, 67) - semitones(&band, 60) - 7.01955).abs() < 1e-4);
     band.stage.button("Tune to equal temperament");
     assert_eq!(pitch(&band, 60), None, "no tuning of its own");
-    for _ in 0..3 {
+    for _ in 0..4 {
         band.stage.button("Undo");
     }
     assert!(band.stage.params.state() == before);
