@@ -11,7 +11,7 @@ use super::theme::{GAP, PADDING, SMALL, TEXT, font};
 use super::widgets::buttons::{Look, button};
 use super::widgets::list;
 use super::widgets::progress::PAUSE;
-use super::widgets::text::{is_entered, line, name_field};
+use super::widgets::text::{is_entered, line, name_field, take_over};
 use crate::editor::background::Background;
 use egui::{Align2, Id, Rect, Role, ScrollArea, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 use listing::{Entry, Listing};
@@ -52,6 +52,8 @@ pub(super) struct Picker {
     name: String,
     /// Whether the path is being typed, so that a folder that arrives late does not write over it.
     is_typed: bool,
+    /// Whether the field for what is most likely typed takes the focus.
+    takes_focus: bool,
     /// A path that is written over if the user saves again.
     confirm: Option<PathBuf>,
     complaint: String,
@@ -63,7 +65,7 @@ impl Picker {
         if let Pick::Place(sound) = &pick {
             self.name = format!("{}.toml", file_stem(sound.name()));
         }
-        self.pick = Some(pick);
+        (self.pick, self.takes_focus) = (Some(pick), true);
         self.search = listing::find_places(library.map(Library::presets_folder)).ok();
         let last = self.listing.folder.clone();
         let first = || std::env::home_dir().unwrap_or_else(|| PathBuf::from("/"));
@@ -154,6 +156,12 @@ impl Picker {
         let edit = TextEdit::singleline(&mut self.path).id(Id::unique("path")).hint_text("a folder or file");
         let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
         name_field(&response, "Path of a folder or file", &self.path);
+        // When what is there is known, so that the first letter replaces it.
+        if self.takes_focus && self.work.is_none() {
+            self.takes_focus = false;
+            let (field, text) = if saves { ("file name", &self.name) } else { ("path", &self.path) };
+            take_over(ui, Id::unique(field), text);
+        }
         self.is_typed |= response.changed();
         if is_entered(&response) {
             to = Some(PathBuf::from(self.path.trim()));
@@ -262,11 +270,7 @@ impl Picker {
             if is_chosen || response.hovered() || response.has_focus() {
                 ui.painter().rect_filled(cell, 3.0, palette.raised);
             }
-            let colour = match (is_chosen, is_folder) {
-                (true, _) => palette.accent_text,
-                (false, true) => palette.text,
-                (false, false) => palette.muted,
-            };
+            let colour = if is_chosen { palette.accent_text } else { palette.text };
             let text = if *is_folder { format!("{name}/") } else { name.clone() };
             line(ui.painter(), cell.shrink2(vec2(5.0, 0.0)), Align2::LEFT_CENTER, &text, TEXT, colour);
             if !response.clicked() {

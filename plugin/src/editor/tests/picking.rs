@@ -68,6 +68,9 @@ fn a_scale_is_chosen_in_a_folder_below() {
     stage.harness.get_by_role_and_label(Role::Tab, "Tuning").click();
     stage.harness.run_steps(3);
     stage.button("Open a scale or mapping");
+    let field =
+        |stage: &Stage| stage.harness.get_by_role_and_label(Role::TextInput, "Path of a folder or file").is_focused();
+    stage.until(field);
     stage.go(folder.path(), "Folder more");
     assert!(!stage.is_listed("mine.toml"), "it is no scale");
     stage.harness.check_accessibility();
