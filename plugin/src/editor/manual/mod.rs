@@ -5,7 +5,7 @@ pub(super) mod text;
 use crate::editor::theme::{GAP, PADDING, Palette, RADIUS, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
 use egui::text::{LayoutJob, TextFormat};
-use egui::{Align2, Color32, FontId, Rect, RichText, ScrollArea, Sense, Stroke, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, Color32, FontId, Label, Rect, RichText, ScrollArea, Sense, Stroke, Ui, UiBuilder, pos2, vec2};
 use sprung::manual::PAGES;
 use text::{Block, Style, blocks, pieces};
 
@@ -99,7 +99,8 @@ fn show_block(ui: &mut Ui, block: &Block, palette: &Palette) {
         Block::Item(mark, text) => {
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(mark).font(font(TEXT + 0.5)).color(palette.muted));
-                ui.label(job(text, TEXT + 0.5, palette.text, palette, width - 26.0));
+                // In a row, a text goes on in one line unless it is told to wrap.
+                ui.add(Label::new(job(text, TEXT + 0.5, palette.text, palette, width)).wrap());
             });
             ui.add_space(3.0);
         }

@@ -131,6 +131,9 @@ fn every_page_of_the_manual_can_be_shown() {
         for (name, _) in sprung::manual::PAGES {
             stage.harness.get_by_label(&format!("Manual: {name}")).click();
             stage.harness.run_steps(2);
+            let labels = stage.harness.query_all_by_role(Role::Label);
+            let right = labels.map(|label| label.rect().right()).fold(0.0, f32::max);
+            assert!(right <= size[0] as f32, "{name} wraps: {right}");
         }
     }
 }
