@@ -82,7 +82,7 @@ impl BodyPage {
         let rest = inner.with_min_x(side.right() + GAP);
         let mut picked = self.side(ui, side, &origin, controls);
         if origin == Origin::Table {
-            picked = offer(ui, rest, LACKS, (&origin, shown.guide().family), controls).or(picked);
+            picked = offer(ui, rest, LACKS, (&origin, shown.family()), controls).or(picked);
         }
         if let Some((changed, what)) = picked {
             self.leave(controls);

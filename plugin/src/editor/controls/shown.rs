@@ -3,7 +3,7 @@
 use crate::loaded::Loaded;
 use crate::params::SprungParams;
 use sprung::patch::Patch;
-use sprung::preset::{Guide, KitPreset, OwnTuning, Playable, Preset};
+use sprung::preset::{Family, Guide, KitPreset, OwnTuning, Playable, Preset};
 use sprung::sound::Pad;
 use std::sync::Arc;
 
@@ -85,6 +85,21 @@ impl Shown {
         &self.guide
     }
 
+    /// The family of the sound whose modes are shown.
+    pub(crate) fn family(&self) -> Option<Family> {
+        let of_kit = |kit: &KitPreset| kit.sounds.get(self.sound).and_then(|(_, preset)| preset.guide.family);
+        self.kit().map_or(self.guide.family, of_kit)
+    }
+
+    /// The keys that the sound is made for, or that have a pad: one bit each.
+    pub(crate) fn keys(&self) -> u128 {
+        let is_meant = |key: &u8| match self.kit() {
+            Some(_) => self.loaded.kit.pad(*key).is_some(),
+            None => (self.guide.lowest..=self.guide.highest).contains(key),
+        };
+        (0..128).filter(is_meant).fold(0, |keys, key| keys | 1 << key)
+    }
+
     /// The name of a pad: its own, or that of its sound.
     pub(crate) fn pad_name(&self, pad: &Pad) -> String {
         self.playable.pad_name(pad).to_owned()
@@ -157,6 +172,7 @@ mod tests {
             shown.follow(key);
             let pad = shown.loaded().kit.pad(key).unwrap().sound;
             assert_eq!(shown.patch(), shown.loaded().kit.sounds()[pad].patch());
+            assert!(shown.family().is_some() && shown.keys() >> key & 1 == 1 && shown.keys() & 1 == 0);
             assert!(shown.shows(key) && shown.guide().home == key && shown.subject() != first);
         }
         shown.follow(0);

@@ -13,6 +13,8 @@ use sprung::units::note_name;
 const WIDTH: f32 = 22.0;
 /// Width and height of a black key, as shares of a white key's.
 const BLACK: [f32; 2] = [0.62, 0.62];
+/// How far the colour of a key that the sound is not made for goes to that of the other keys.
+const DIM: f32 = 0.25;
 /// For each key of an octave, the number of white keys below it, and whether it is black.
 const OCTAVE: [(usize, bool); 12] = [
     (0, false),
@@ -81,8 +83,15 @@ impl Keys {
 }
 
 impl Piano {
-    /// Shows the keys; `down` has one bit for each held key.
-    pub(crate) fn show(&mut self, ui: &Ui, rect: Rect, down: u128, guide: &Guide, controls: &mut Controls) {
+    /// Shows the keys; `down` has one bit for each held key, and `meant` for each that the sound is made for.
+    pub(crate) fn show(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        [down, meant]: [u128; 2],
+        guide: &Guide,
+        controls: &mut Controls,
+    ) {
         let keys = Keys::of(rect);
         let response = ui.interact(rect, Id::unique("piano"), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Keyboard"));
@@ -94,7 +103,8 @@ impl Piano {
             let title = format!("{} at velocity {:.0}", note_name(key), velocity * 127.0);
             *controls.hint = Hint::new(title, format!("lower on the key is louder   {range}"));
         }
-        paint(ui.painter(), &keys, down | self.held.key().map_or(0, |key| 1 << key), guide, controls.palette);
+        let down = down | self.held.key().map_or(0, |key| 1 << key);
+        paint(ui.painter(), &keys, [down, meant], guide.home, controls.palette);
     }
 
     /// Releases the key that the mouse holds.
@@ -103,7 +113,7 @@ impl Piano {
     }
 }
 
-fn paint(painter: &Painter, keys: &Keys, down: u128, guide: &Guide, palette: &Palette) {
+fn paint(painter: &Painter, keys: &Keys, [down, meant]: [u128; 2], home: u8, palette: &Palette) {
     for black in [false, true] {
         for key in keys.keys() {
             let (rect, is_black) = keys.key(key);
@@ -111,16 +121,17 @@ fn paint(painter: &Painter, keys: &Keys, down: u128, guide: &Guide, palette: &Pa
                 continue;
             }
             let is_down = down >> key & 1 == 1;
-            let is_meant = (guide.lowest..=guide.highest).contains(&key);
+            let is_meant = meant >> key & 1 == 1;
             let fill = match (is_down, is_black) {
                 (true, _) => palette.accent,
-                (_, true) => palette.black_key,
-                (_, false) if !is_meant => palette.white_key.lerp_to_gamma(palette.ground, 0.22),
-                (_, false) => palette.white_key,
+                (_, true) if is_meant => palette.black_key,
+                (_, false) if is_meant => palette.white_key,
+                (_, true) => palette.black_key.lerp_to_gamma(palette.white_key, DIM),
+                (_, false) => palette.white_key.lerp_to_gamma(palette.black_key, DIM),
             };
             let shape = if is_black { rect } else { rect.shrink2(vec2(0.5, 0.0)) };
             painter.rect_filled(shape, egui::CornerRadius { nw: 0, ne: 0, sw: 3, se: 3 }, fill);
-            if is_black && !is_down {
+            if is_black && is_meant && !is_down {
                 let top = shape.with_max_y(shape.bottom() - 4.0).shrink2(vec2(2.0, 0.0));
                 painter.rect_filled(top, 1.0, palette.black_key.lerp_to_gamma(palette.white_key, 0.1));
             }
@@ -129,7 +140,7 @@ fn paint(painter: &Painter, keys: &Keys, down: u128, guide: &Guide, palette: &Pa
                 let colour = if is_down { palette.on_accent } else { palette.key_text };
                 line(painter, label, Align2::CENTER_CENTER, &note_name(key), 9.5, colour);
             }
-            if key == guide.home && !is_down {
+            if key == home && !is_down {
                 painter.circle_filled(pos2(rect.center().x, rect.bottom() - 18.0), 2.5, palette.accent);
             }
         }

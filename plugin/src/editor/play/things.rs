@@ -58,7 +58,7 @@ impl Things {
             let model = |id| Model::find(id).cloned().unwrap_or(Model::String);
             self.figures = TILES.iter().map(|(id, _)| Figure::small(&Body::new(model(id)))).collect();
         }
-        let family = shown.guide().family;
+        let family = shown.family();
         let (changed, what) = if is_tall {
             self.tiles(ui, rect, &origin, family, controls)?
         } else {

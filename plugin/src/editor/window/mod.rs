@@ -323,7 +323,7 @@ impl Window {
             self.message = message;
         }
         self.browser.follow_time(now, &controls);
-        self.piano.show(ui, layout.piano, down, self.shown.guide(), &mut controls);
+        self.piano.show(ui, layout.piano, [down, self.shown.keys()], self.shown.guide(), &mut controls);
         // In a plugin, the computer's keyboard belongs to the host.
         let is_alone = host.plugin_api() == PluginApi::Standalone;
         let is_typing = ui.ctx().egui_wants_keyboard_input();
