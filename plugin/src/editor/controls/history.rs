@@ -33,6 +33,8 @@ pub(crate) struct History {
     is_changed: bool,
     /// The name of the sound that was chosen last, until somebody has looked.
     chosen: Option<String>,
+    /// The name of the changed sound in whose place one was loaded, until somebody has looked.
+    lost: Option<String>,
 }
 
 impl History {
@@ -56,6 +58,7 @@ impl History {
     /// Loads a sound as one step.
     pub(crate) fn load(&mut self, playable: Playable, params: &SprungParams, host: &GuiContext) {
         self.begin(params);
+        self.lost = self.is_changed.then(|| params.name());
         let name = playable.name().to_owned();
         files::load(playable, params, host);
         self.chosen = Some(name.clone());
@@ -76,6 +79,11 @@ impl History {
     /// The name of the sound that was loaded since the last call.
     pub(crate) fn take_chosen(&mut self) -> Option<String> {
         self.chosen.take()
+    }
+
+    /// The name of the sound that was changed, not saved, and replaced since the last call.
+    pub(crate) fn take_lost(&mut self) -> Option<String> {
+        self.lost.take()
     }
 
     /// Like [`History::end`], after the sound was replaced by the other one of the two versions, which may be changed.

@@ -106,6 +106,54 @@ fn keys_undo_and_redo_in_the_program_alone_and_search_no_sound_where_a_path_is_t
 }
 
 #[test]
+fn keys_zoom_and_open_the_manual_and_a_sound_that_was_not_saved_is_told_for_a_while() {
+    let mut stage = stage("Church Bell", SIZE, 1.0, Theme::Dark);
+    stage.host.is_alone.store(true, Relaxed);
+    for (key, zoom) in [(Key::Plus, 125), (Key::Plus, 150), (Key::Minus, 125), (Key::Num0, 100)] {
+        stage.harness.key_press_modifiers(Modifiers::COMMAND, key);
+        stage.harness.run_steps(3);
+        assert_eq!((stage.params.view().zoom, stage.harness.ctx.zoom_factor()), (zoom, zoom as f32 / 100.0), "{key:?}");
+    }
+    for is_shown in [true, false] {
+        stage.harness.key_press(Key::F1);
+        stage.harness.run_steps(3);
+        assert_eq!(stage.harness.query_by_role_and_label(Role::Label, "Exciters").is_some(), is_shown);
+    }
+    // While a knob is dragged, nothing is undone under it.
+    let knob = stage.at("Mallet hardness");
+    let press = |pressed| Event::PointerButton {
+        pos: knob,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    stage.button("Next sound");
+    let name = stage.params.name();
+    for event in [Event::PointerMoved(knob), press(true), Event::PointerMoved(knob - egui::vec2(0.0, 30.0))] {
+        stage.harness.event(event);
+        stage.harness.step();
+    }
+    stage.harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    stage.harness.run_steps(2);
+    stage.harness.event(press(false));
+    stage.harness.run_steps(2);
+    assert_eq!(stage.params.name(), name);
+    let changed = stage.params.state();
+    let says = |stage: &Stage| stage.harness.query_by_label_contains("was not saved: Undo brings it back").is_some();
+    stage.button("Next sound");
+    assert!(says(&stage));
+    stage.button("Undo");
+    assert!(stage.params.state() == changed && !says(&stage));
+    stage.button("Next sound");
+    stage.harness.run_steps(440);
+    assert!(says(&stage));
+    stage.harness.run_steps(60);
+    assert!(!says(&stage), "after some seconds it goes");
+    stage.button("Next sound");
+    assert!(!says(&stage), "this one was not changed");
+}
+
+#[test]
 fn a_sound_is_saved_under_a_name_found_again_and_thrown_away() {
     let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
     let library = Library::at(stage.folder.path());

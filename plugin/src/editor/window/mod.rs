@@ -358,6 +358,10 @@ impl Window {
         if let Some(request) = request.or(by_key).or(by_program) {
             self.carry_out(request, ui, host);
         }
+        if let Some(name) = self.history.take_lost() {
+            self.message = Ok(format!("‘{name}’ was not saved: Undo brings it back"));
+            ui.ctx().request_repaint();
+        }
         if let (Some(name), Some(library)) = (self.history.take_chosen(), self.browser.library())
             && let Err(error) = library.note_recent(&name)
         {
