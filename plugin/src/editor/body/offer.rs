@@ -5,7 +5,7 @@ use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{GAP, SMALL};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::paragraph;
-use egui::{Rect, Ui};
+use egui::{Rect, Shape, Ui};
 use sprung::preset::Family;
 use sprung_picture::{Origin, model_name, suggested_model};
 
@@ -40,7 +40,10 @@ pub(crate) fn offer_alone(ui: &Ui, rect: Rect, shown: &Shown, controls: &mut Con
 /// Shows a text with a button below it. Returns whether that is clicked.
 fn say(ui: &Ui, rect: Rect, text: &str, [deed, help]: [&str; 2], controls: &mut Controls) -> bool {
     let palette = controls.palette;
+    // On the stage, a room's walls are behind the text.
+    let ground = ui.painter().add(Shape::Noop);
     let top = rect.top() + paragraph(ui.painter(), rect, text, SMALL, palette.muted) + GAP / 2.0;
+    ui.painter().set(ground, Shape::rect_filled(rect.with_max_y(top), 0.0, palette.panel));
     let place = rect.with_min_y(top).with_max_y(top + 22.0).with_max_x(rect.right().min(rect.left() + WIDEST));
     let response = button(ui, place, deed, deed, Look::Main, palette);
     if response.hovered() {

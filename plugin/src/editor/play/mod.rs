@@ -21,7 +21,10 @@ use sprung::params::{PARAMS, Param, ParamInfo};
 /// The smallest height of a page with titles and tiles: 330 for the tiles of bodies and materials, and the rest for knobs and gaps.
 const TALL: f32 = 456.0;
 /// Width of the columns beside the body, on a page that is tall and on one that is not.
-const SIDES: [[f32; 2]; 2] = [[126.0, 170.0], [52.0, 130.0]];
+const SIDES: [[f32; 2]; 2] = [[126.0, 170.0], [100.0, 130.0]];
+/// Heights of the row with the spaces, and of the line about the body above it.
+const FOOT: f32 = 22.0;
+const CAPTION: f32 = 18.0;
 
 /// Knobs that matter for most sounds, and their names.
 const ESSENTIALS: [(Param, &str); 6] = [
@@ -73,9 +76,14 @@ impl PlayPage {
         controls.palette.paint_panel(ui.painter(), stage);
         let [left, right] = SIDES[usize::from(!is_tall)];
         let inner = stage.shrink(PADDING);
+        let foot = inner.with_min_y(inner.bottom() - FOOT);
+        // Below the picture, not on it, stands what is written.
+        let floor = stage.with_max_y(foot.top() - CAPTION);
         let middle = inner.with_min_x(inner.left() + left + GAP).with_max_x(inner.right() - right - GAP);
-        stage::paint_floor(ui.painter(), stage, middle, controls);
-        self.stand(ui, stage, middle, shown, energies, controls);
+        stage::paint_floor(ui.painter(), floor, middle, controls);
+        let caption = self.stand(ui, middle.with_max_y(floor.bottom()), shown, energies, controls);
+        let under = middle.with_min_y(floor.bottom()).with_max_y(foot.top());
+        line(ui.painter(), under, Align2::CENTER_CENTER, &caption, SMALL, controls.palette.muted);
         let mut message = None;
         if shown.preset().is_some() {
             let at = inner.with_max_x(inner.left() + left);
@@ -89,7 +97,6 @@ impl PlayPage {
         } else {
             offer_alone(ui, inner.with_min_x(inner.right() - right), shown, controls);
         }
-        let foot = inner.with_min_y(inner.bottom() - 22.0);
         let spaces = stage::show_spaces(ui, foot, controls);
         if shown.preset().is_some() {
             hands::show(ui, foot.with_min_x(spaces + GAP), &shown.patch().routes, controls);
@@ -99,10 +106,10 @@ impl PlayPage {
         message
     }
 
-    /// Shows the body, which can be struck.
-    fn stand(&mut self, ui: &Ui, stage: Rect, middle: Rect, shown: &Shown, energies: &[f32], controls: &mut Controls) {
+    /// Shows the body, which can be struck. Returns what is said of it.
+    fn stand(&mut self, ui: &Ui, middle: Rect, shown: &Shown, energies: &[f32], controls: &mut Controls) -> String {
         let palette = controls.palette;
-        let rect = stage::place_of_body(stage, middle);
+        let rect = middle.shrink2(vec2(6.0, 4.0));
         // A body without places sounds wherever it is clicked. The place that can be dragged lies over this.
         let response = ui.interact(middle, egui::Id::unique("stage"), Sense::click());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Strike"));
@@ -113,14 +120,12 @@ impl PlayPage {
             let now = ui.input(|input| input.time);
             self.audition.strike(shown.guide().home, velocity(ui), now, controls.params.link());
         }
-        let text = match (shown.preset(), self.was_played) {
+        match (shown.preset(), self.was_played) {
             (None, _) => "A kit: each key has a body of its own. A click strikes this one.".to_owned(),
             _ if !self.body.has_place(shown, controls) => format!("Strike it anywhere: {caption}."),
             (_, false) => "Click where it is to be struck.".to_owned(),
             (_, true) => caption,
-        };
-        let under = middle.with_min_y(middle.bottom() - 44.0).with_max_y(middle.bottom() - 26.0);
-        line(ui.painter(), under, Align2::CENTER_CENTER, &text, SMALL, palette.muted);
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use egui::{Align2, Color32, Id, Painter, Rect, Role, Sense, Shape, Stroke, Strok
 use sprung::params::Param;
 use sprung::preset::Playable;
 
-/// Shows the tiles, with their names if there is room. Returns whether another exciter acts alone now.
+/// Shows the tiles. Returns whether another exciter acts alone now.
 pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) -> bool {
     let palette = controls.palette;
     let top = if is_tall { 18.0 } else { 0.0 };
@@ -40,12 +40,11 @@ pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) 
         let face = if is_on || is_hovered { palette.raised } else { palette.ground };
         ui.painter().rect(tile, RADIUS, face, edge, StrokeKind::Inside);
         let colour = if is_on { palette.accent } else { palette.muted };
-        let picture = Rect::from_min_size(tile.min, vec2(36.0, height)).shrink(if is_tall { 9.0 } else { 6.0 });
+        let [wide, edge] = if is_tall { [36.0, 9.0] } else { [28.0, 5.0] };
+        let picture = Rect::from_min_size(tile.min, vec2(wide, height)).shrink(edge);
         paint(ui.painter(), picture, param, colour, palette);
-        if is_tall {
-            let text = if is_on || is_hovered { palette.text } else { palette.muted };
-            line(ui.painter(), tile.with_min_x(tile.left() + 44.0), Align2::LEFT_CENTER, name, TEXT, text);
-        }
+        let text = if is_on || is_hovered { palette.text } else { palette.muted };
+        line(ui.painter(), tile.with_min_x(tile.left() + wide + 6.0), Align2::LEFT_CENTER, name, TEXT, text);
         let is_hovered = mover.show(ui, lamp, controls).hovered() || is_hovered;
         if is_hovered {
             *controls.hint = Hint::new(name, format!("{help} Click: it alone. Its lamp adds it to the others."));

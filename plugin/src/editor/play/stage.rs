@@ -15,11 +15,6 @@ const FLOORS: [&str; 4] = ["Nothing", "Plate", "Spring", "Room"];
 /// Height of the floor's far edge, as a share of the stage's.
 const HORIZON: f32 = 0.64;
 
-/// The part of the stage in which the body is.
-pub(super) fn place_of_body(stage: Rect, middle: Rect) -> Rect {
-    middle.with_max_y(stage.top() + 0.9 * stage.height()).shrink2(vec2(6.0, 4.0))
-}
-
 /// Paints the floor, with waves as far as the space is mixed in.
 pub(in crate::editor) fn paint_floor(painter: &Painter, stage: Rect, middle: Rect, controls: &Controls) {
     let palette = controls.palette;
