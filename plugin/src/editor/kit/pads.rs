@@ -9,7 +9,7 @@ use crate::editor::keyboard::grid::velocity;
 use crate::editor::keyboard::held_key::HeldKey;
 use crate::editor::theme::{RADIUS, SMALL, TEXT};
 use crate::editor::widgets::carried;
-use crate::editor::widgets::text::line;
+use crate::editor::widgets::text::{fitting, line};
 use crate::link::Link;
 use crate::loaded::Loaded;
 use egui::{Align2, DragAndDrop, Id, Key, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
@@ -199,7 +199,8 @@ impl Face<'_> {
             line(painter, top, Align2::RIGHT_CENTER, &self.group.to_string(), SMALL, colour);
         }
         let Some(pad) = self.pad else {
-            line(painter, inside, Align2::CENTER_CENTER, "Drop a sound here", SMALL, muted);
+            let text = fitting(painter, &["Drop a sound here", "Drop here", "empty"], SMALL, inside.width());
+            line(painter, inside, Align2::CENTER_CENTER, text, SMALL, muted);
             return;
         };
         let bar = inside.with_min_y(inside.bottom() - 3.0);

@@ -12,7 +12,7 @@ use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::theme::{PADDING, SMALL, TITLE_HEIGHT};
 use crate::editor::widgets::buttons::{Look, button};
-use crate::editor::widgets::text::line;
+use crate::editor::widgets::text::{fitting, line};
 use crate::link::Link;
 use axes::Axes;
 use drag::{Drag, Step};
@@ -103,12 +103,14 @@ impl ModesView {
         let snap = Rect::from_min_max(pos2(rect.right() - 78.0, rect.top() + 1.0), rect.max);
         let rest = Rect::from_min_max(pos2(title.right() + 12.0, rect.top()), pos2(snap.left() - 8.0, rect.bottom()));
         let help = match (is_editable, patch.modes.origin().is_some()) {
-            (false, _) => "of the pad that was struck or chosen last",
-            (true, true) => "from a model; the first change makes them a table of their own",
-            (true, false) => {
-                "drag: level, ratio   Alt: decay   Ctrl: pan   Shift: fine   right-drag: draw   double-click: add, remove"
-            }
+            (false, _) => ["of the pad that was struck or chosen last", "of the chosen pad"],
+            (true, true) => ["from a model; the first change makes them a table of their own", "from a model"],
+            (true, false) => [
+                "drag: level, ratio   Alt: decay   Ctrl: pan   Shift: fine   right-drag: draw   double-click: add, remove",
+                "drag: level, ratio   Alt: decay   Ctrl: pan",
+            ],
         };
+        let help = fitting(ui.painter(), &help, SMALL, rest.width());
         line(ui.painter(), rest, Align2::LEFT_CENTER, help, SMALL, palette.muted);
         let look = if self.snap == Snap::Off { Look::Plain } else { Look::Main };
         let response = button(ui, snap, self.snap.name(), "Snap", look, palette);

@@ -6,7 +6,7 @@ use crate::editor::pages::curves;
 use crate::editor::pages::sections::sections;
 use crate::editor::routes::{OF_KITS, source_name};
 use crate::editor::theme::{RADIUS, SMALL, TEXT};
-use crate::editor::widgets::text::{line, width};
+use crate::editor::widgets::text::{fitting, line, width};
 use egui::{
     Align2, CursorIcon, Id, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
@@ -63,8 +63,11 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, contr
             places.push((*source, name, Rect::from_min_size(pos2(0.0, top), vec2(whole, TILE))));
             top += TILE + SPACE;
         }
-        let drags =
-            if shown.preset().is_some() { "Drag one to a knob, on any page" } else { "A kit’s sounds have them" };
+        let drags: &[&str] = match shown.preset() {
+            Some(_) => &["Drag one to a knob, on any page", "Drag one to a knob"],
+            None => &["A kit’s sounds have them"],
+        };
+        let drags = fitting(ui.painter(), drags, SMALL, whole);
         let mut titles = vec![(drags, 0.0)];
         for (title, group) in [("Played", played.collect::<Vec<_>>()), ("Macros", macros.collect())] {
             titles.push((title, top));

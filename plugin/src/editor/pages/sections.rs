@@ -24,9 +24,11 @@ pub(super) const PAGES: [&[&str]; 4] = [
     &["Soundbox", "Strings", "Tremolo", "Drive", "Tone", "Space", "Output"],
     &["Voices", "Control"],
 ];
-/// Width of a picture at the left of the knobs, with the gap after it; and the least of one beside the title.
+/// Width of a picture at the left of the knobs, with the gap after it; and the least of one in their last row.
 const PICTURE: f32 = 132.0;
 const SMALLEST: f32 = 50.0;
+/// Least width of a cell, in which each name and each choice is whole.
+const LEAST: f32 = 69.0;
 /// Said below a picture of nothing.
 const CHOOSE: &str = "none: choose a type";
 /// How much of the brightness is left of a part that is off.
@@ -84,9 +86,9 @@ pub(super) fn show(
     let columns = |section: Section| section.len().div_ceil(rows);
     let count: usize = shown.iter().map(|(section, _)| columns(section)).sum();
     let gaps = shown.len() as f32 * (2.0 * PADDING + GAP) - GAP;
-    let [least, most] = CELL_WIDTH;
-    // Pictures at the left of the knobs where there is room beside knobs of a good width, the selected part's first.
-    let room = (rect.width() - gaps - count as f32 * 0.5 * (least + most)) / PICTURE;
+    let (least, most) = (LEAST, CELL_WIDTH[1]);
+    // Pictures at the left of the knobs where there is room, the selected part's first.
+    let room = (rect.width() - gaps - count as f32 * least) / PICTURE;
     let pictures = if rows > 1 { room.max(0.0) as usize } else { 0 };
     let is_other = |(section, _): &&(Section, bool)| section[0].section != selected;
     let (others, first): (Vec<_>, Vec<_>) =
@@ -121,20 +123,16 @@ pub(super) fn show(
                     picture(ui.painter(), place, section, figure, controls)
                 });
             }
-            // A picture in the last row if it has room for one, otherwise a small one beside the title.
+            // A picture in the last row if it has room for one.
             let free = (columns(section) - section.len() % columns(section)) % columns(section);
-            let picture = if free > 0 {
+            if free > 0 && !is_large {
                 let row = panel.top() + TITLE_HEIGHT + (section.len() / columns(section)) as f32 * CELL_HEIGHT;
                 let left = panel.right() - PADDING - free as f32 * cell_width;
                 let place = Rect::from_min_size(pos2(left, row), vec2(free as f32 * cell_width, KNOB + 14.0));
-                place.shrink2(vec2(6.0, 2.0))
-            } else {
-                let width = (0.45 * size.x).min(76.0);
-                let corner = panel.right_top() + vec2(-width - PADDING, 4.0);
-                Rect::from_min_size(corner, vec2(width, TITLE_HEIGHT - 6.0))
-            };
-            if !is_large && picture.width() > SMALLEST {
-                curves::paint(ui.painter(), picture, section, controls);
+                let picture = place.shrink2(vec2(6.0, 2.0));
+                if picture.width() > SMALLEST {
+                    curves::paint(ui.painter(), picture, section, controls);
+                }
             }
             let corner = panel.min + vec2(PADDING + aside, TITLE_HEIGHT);
             let grid = Rect::from_min_size(corner, vec2(cell_width, CELL_HEIGHT));
@@ -200,6 +198,7 @@ pub(in crate::editor) fn knobs(
 mod tests {
     use super::*;
     use crate::editor::motion::sources::section_of;
+    use crate::editor::widgets::text;
     use sprung::patch::routes::Source;
 
     #[test]
@@ -216,6 +215,24 @@ mod tests {
         for names in pages() {
             assert_eq!(sections(names).count(), names.len(), "{names:?}");
         }
+    }
+
+    #[test]
+    fn names_and_choices_are_whole_in_the_smallest_cell() {
+        let context = egui::Context::default();
+        let mut cut = Vec::new();
+        let mut output = context.run_ui(egui::RawInput::default(), |ui| {
+            let width = |text: &str| text::width(ui.painter(), text, 0.82 * SMALL);
+            for info in PAGES.into_iter().flat_map(sections).flatten() {
+                let name = short_name(info, &Guide::default());
+                let wide =
+                    info.choices.iter().filter(|choice| width(choice) > LEAST - 2.0 - choice::BESIDE - choice::AROUND);
+                cut.extend((width(&name) > LEAST - 2.0).then(|| name.clone()));
+                cut.extend(wide.map(|choice| format!("{name}: {choice}")));
+            }
+        });
+        output.textures_delta.clear();
+        assert!(cut.is_empty(), "{cut:?}");
     }
 
     #[test]

@@ -211,6 +211,8 @@ impl Theme {
             // A wheel has one direction, and a page that can be scrolled has one.
             style.always_scroll_the_only_direction = true;
             style.interaction.tooltip_delay = 0.6;
+            // A list that goes on says so before the pointer is over it.
+            style.spacing.scroll.dormant_handle_opacity = style.spacing.scroll.active_handle_opacity;
         });
     }
 }

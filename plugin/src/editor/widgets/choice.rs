@@ -10,10 +10,14 @@ use egui::{
 };
 use sprung::params::ParamInfo;
 
+/// Space inside a field around its text, and in a cell beside it.
+pub(crate) const AROUND: f32 = 15.0;
+pub(crate) const BESIDE: f32 = 3.0;
+
 /// Shows a choice in a cell of the size of a knob's, called `name`.
 pub(crate) fn show(ui: &mut Ui, cell: Rect, info: &'static ParamInfo, name: &str, controls: &mut Controls) {
     let centre = pos2(cell.center().x, cell.top() + KNOB / 2.0 + 1.0);
-    let rect = Rect::from_center_size(centre, vec2(cell.width() - 4.0, 22.0));
+    let rect = Rect::from_center_size(centre, vec2(cell.width() - BESIDE, 22.0));
     let value = controls.text(info);
     let is_default = controls.value(info) == info.default;
     let field = Field { id: knob::id(info), name: info.name, value: &value, is_default };
@@ -70,7 +74,7 @@ impl Field<'_> {
         let mark = pos2(rect.right() - 7.0, rect.center().y);
         let points = vec![mark + vec2(-3.0, -1.5), mark + vec2(3.0, -1.5), mark + vec2(0.0, 2.5)];
         ui.painter().add(Shape::convex_polygon(points, palette.muted, Stroke::NONE));
-        let inside = Rect::from_min_max(rect.min + vec2(5.0, 0.0), rect.max - vec2(11.0, 0.0));
+        let inside = Rect::from_min_max(rect.min + vec2(4.0, 0.0), rect.max - vec2(AROUND - 4.0, 0.0));
         let colour = if is_default { palette.text } else { palette.accent_text };
         line(ui.painter(), inside, Align2::LEFT_CENTER, value, SMALL, colour);
         (response, picked)

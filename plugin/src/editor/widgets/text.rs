@@ -26,6 +26,12 @@ pub(crate) fn width(painter: &Painter, text: &str, size: f32) -> f32 {
     painter.layout_no_wrap(text.to_owned(), font(size), Color32::WHITE).size().x
 }
 
+/// The first of some texts that fits into this room, or else the last.
+pub(crate) fn fitting<'a>(painter: &Painter, texts: &[&'a str], size: f32, room: f32) -> &'a str {
+    let found = texts.iter().find(|text| width(painter, text, size) <= room);
+    found.or(texts.last()).copied().unwrap_or_default()
+}
+
 /// Draws lines of text that are broken to the width of a rectangle, from its top. Returns their height.
 pub(crate) fn paragraph(painter: &Painter, rect: Rect, text: &str, size: f32, colour: Color32) -> f32 {
     let galley = painter.layout(text.to_owned(), font(size), colour, rect.width());
