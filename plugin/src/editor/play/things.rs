@@ -99,13 +99,14 @@ impl Things {
             let offset = vec2((place % columns) as f32, (place / columns) as f32) * (size + vec2(4.0, 4.0));
             let tile = Rect::from_min_size(tiles.min + offset, size);
             let is_now = now == Some(id);
-            let response = choice(ui, tile, ("thing", name), is_now);
-            let face = if is_now || response.hovered() { palette.raised } else { palette.ground };
-            ui.painter().rect(tile, RADIUS, face, edge(&response, is_now, controls), StrokeKind::Inside);
+            let is_lit = is_now || origin.body().is_some_and(|body| is_kin(&body.model, id));
+            let response = choice(ui, tile, ("thing", name), is_lit);
+            let face = if is_lit || response.hovered() { palette.raised } else { palette.ground };
+            ui.painter().rect(tile, RADIUS, face, edge(&response, is_lit, controls), StrokeKind::Inside);
             // A quarter of a pixel lower: edges on the centres of pixels are filled by some graphics drivers and not by others.
             let picture = tile.with_max_y(tile.bottom() - 15.0).shrink2(vec2(7.0, 4.0)).translate(vec2(0.0, 0.25));
             face::paint(ui.painter(), picture, figure, &[], None, palette);
-            let colour = if is_now { palette.text } else { palette.muted };
+            let colour = if is_lit { palette.text } else { palette.muted };
             line(ui.painter(), tile.with_min_y(tile.bottom() - 16.0), Align2::CENTER_CENTER, name, SMALL, colour);
             if response.clicked() && !is_now {
                 picked = Some((origin.with_model(false, Model::find(id)), format!("model {}", model_name(id))));
@@ -159,6 +160,21 @@ fn edge(response: &Response, is_now: bool, controls: &Controls) -> Stroke {
         (false, true) => Stroke::new(1.5, palette.accent),
         (false, false) => Stroke::new(1.0, palette.outline),
     }
+}
+
+/// Whether a model has no tile of its own, and that of `id` comes nearest.
+fn is_kin(model: &Model, id: &str) -> bool {
+    let kin = match model {
+        Model::Marimba | Model::Vibraphone | Model::Xylophone | Model::Tine => "free_bar",
+        Model::Timpani(_) => "membrane",
+        Model::Plate { .. } | Model::Bed(_) => "free_plate",
+        Model::Disc { .. } => "free_disc",
+        Model::HandBell => "church_bell",
+        Model::StoppedTube | Model::Cone { .. } | Model::TubularBell => "open_tube",
+        Model::Glass { .. } => "glass",
+        _ => return false,
+    };
+    kin == id
 }
 
 /// The list of all models.

@@ -6,8 +6,9 @@ use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::window::Face;
 use crate::link::Touch;
 use crate::loaded::Loaded;
+use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, PointerButton, Role, vec2};
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use sprung::params::Param;
 use sprung_picture::Origin;
 
@@ -143,6 +144,10 @@ fn a_table_of_modes_says_what_it_lacks_and_becomes_the_body_that_is_offered() {
         assert_eq!((band.thing(), band.strikes()), (["marimba", "rosewood"], 1));
         band.rect("Struck body");
         assert!(band.stage.harness.query_by_label("Make it a marimba").is_none());
+        if size == SIZE {
+            let tile = band.stage.harness.get_by_role_and_label(Role::RadioButton, "thing: Bar");
+            assert_eq!(tile.accesskit_node().toggled(), Some(Toggled::True), "it is lit for what has none of its own");
+        }
         band.undo();
         assert_eq!(band.thing(), [""; 2]);
     }
