@@ -72,6 +72,7 @@ impl KitPage {
     /// Ends the user's action, and releases the held keys.
     pub(super) fn leave(&mut self, controls: &mut Controls) {
         self.detail.leave(controls);
+        self.sounds.leave();
         self.release(controls.params.link());
     }
 

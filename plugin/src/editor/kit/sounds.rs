@@ -5,6 +5,7 @@ use crate::editor::body::face;
 use crate::editor::browser::sounds::{Category, NONE, Sounds};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{SMALL, TEXT, font};
+use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::list;
 use crate::editor::widgets::text::{line, name_field, paragraph};
 use egui::{Align2, Id, Rect, Role, Sense, TextEdit, Ui, WidgetInfo, vec2};
@@ -23,6 +24,11 @@ pub(super) struct SoundList {
 }
 
 impl SoundList {
+    /// Forgets the search.
+    pub(super) fn leave(&mut self) {
+        self.words.clear();
+    }
+
     /// Shows the list. Returns the sound that was clicked.
     pub(super) fn show(
         &mut self,
@@ -33,9 +39,15 @@ impl SoundList {
     ) -> Option<Arc<Listed>> {
         let palette = controls.palette;
         let field = rect.with_max_y(rect.top() + 22.0);
+        let clear = field.with_min_x(field.right() - field.height());
+        let rest = if self.words.is_empty() { field } else { field.with_max_x(clear.left() - 4.0) };
         let edit = TextEdit::singleline(&mut self.words).id(Id::unique("kit sounds")).hint_text("Sounds for pads");
-        let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
+        let response = ui.put(rest, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
         name_field(&response, "Search for sounds", &self.words);
+        if rest != field && button(ui, clear, "×", "Clear the search for sounds", Look::Plain, palette).clicked() {
+            self.words.clear();
+            response.request_focus();
+        }
         let is_preset = |sound: &Listed| matches!(sound.playable, Playable::Preset(_));
         let mut found = sounds.find(Category::All, &self.words, &[]);
         found.retain(|sound| is_preset(sound));

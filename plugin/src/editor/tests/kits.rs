@@ -210,6 +210,22 @@ fn the_values_of_one_sound_go_with_it_and_end_with_it() {
 }
 
 #[test]
+fn the_search_for_sounds_is_cleared_by_a_button_and_by_leaving() {
+    let mut stage = at("Acoustic Kit", SIZE, Theme::Dark);
+    for clears in [true, false] {
+        stage.sound("Taiko");
+        assert!(stage.harness.query_by_label("Put Kick").is_none());
+        if clears {
+            stage.button("Clear the search for sounds");
+        } else {
+            stage.tab("Play");
+            stage.tab("Kit");
+        }
+        assert!(stage.harness.query_by_label("Put Kick").is_some());
+    }
+}
+
+#[test]
 fn what_is_typed_for_a_pad_stays_with_it() {
     let mut stage = at("Acoustic Kit", SIZE, Theme::Dark);
     let (kick, snare) = (stage.place("C2"), stage.place("D2"));
