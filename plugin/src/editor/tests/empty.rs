@@ -13,12 +13,12 @@ use sprung::preset::{Playable, Preset};
 use std::sync::atomic::Ordering::Relaxed;
 
 impl Stage {
-    /// Whether a text is painted, of which these are the first words.
-    fn paints(&self, words: &str) -> bool {
+    /// Whether a text with these words is painted.
+    pub(super) fn paints(&self, words: &str) -> bool {
         fn is_in(shape: &Shape, words: &str) -> bool {
             match shape {
                 Shape::Vec(shapes) => shapes.iter().any(|shape| is_in(shape, words)),
-                Shape::Text(text) => text.galley.text().starts_with(words),
+                Shape::Text(text) => text.galley.text().contains(words),
                 _ => false,
             }
         }

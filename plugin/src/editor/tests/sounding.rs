@@ -168,7 +168,7 @@ fn the_limiters_work_is_told_beside_the_level() {
     band.event(Event::PointerMoved(meter));
     band.passes(60);
     assert!(band.stage.params.link().telemetry.snapshot().lowered > 1.0);
-    band.stage.harness.get_by_label_contains("the limiter takes");
+    assert!(band.stage.paints("the limiter takes"));
 }
 
 #[test]

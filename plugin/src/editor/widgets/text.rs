@@ -6,7 +6,7 @@ use egui::text_edit::TextEditState;
 use egui::{Align2, Color32, Id, Key, Painter, Rect, Response, Ui, WidgetInfo};
 
 /// Factors for the size of text that would be too wide: the first with which it fits, or else the last.
-const SHRINK: [f32; 3] = [1.0, 0.9, 0.82];
+pub(crate) const SHRINK: [f32; 3] = [1.0, 0.9, 0.82];
 
 /// Draws a line of text into a rectangle, aligned within it. Returns its place.
 pub(crate) fn line(painter: &Painter, rect: Rect, align: Align2, text: &str, size: f32, colour: Color32) -> Rect {

@@ -2,20 +2,22 @@
 
 use crate::editor::controls::{Hint, Said};
 use crate::editor::theme::{Palette, SMALL};
-use crate::editor::widgets::text::{line, width};
-use egui::{Align2, Id, Popup, PopupAnchor, Rect, Role, Sense, Tooltip, Ui, WidgetInfo, pos2};
+use crate::editor::widgets::text::{SHRINK, line, width};
+use egui::{Align2, Id, Popup, PopupAnchor, Rect, RectAlign, Role, Sense, Tooltip, Ui, WidgetInfo, pos2};
 use sprung::engine::Telemetry;
 use sprung::text::counted;
 use std::time::Duration;
 
 /// How often the load is computed, in seconds.
 const INTERVAL: f64 = 0.5;
-/// Seconds for which the pointer rests before a hint stands beside it.
+/// Seconds for which the pointer rests before a hint that is cut in the line is shown whole.
 const REST: f32 = 0.7;
 /// Seconds for which a message stays.
 const STAYS: f64 = 8.0;
 /// The largest width of such a hint.
-const WIDEST: f32 = 280.0;
+const WIDEST: f32 = 400.0;
+/// Space between the title of a hint and its help.
+const TITLE_GAP: f32 = 10.0;
 
 /// The load of the audio thread over the last half second.
 #[derive(Default)]
@@ -93,9 +95,10 @@ impl StatusLine {
             self.is_unread = !text_of(message).is_empty();
         }
         let hint = hint.filter(|_| !self.is_unread);
-        paint(ui, rect, hint, message, right, palette);
-        if let Some(hint) = hint {
-            show_at_pointer(ui, hint);
+        let room = paint(ui, rect, hint, message, right, palette);
+        let is_cut = |hint: &&Hint| hinted(ui, hint) > room;
+        if let Some(hint) = hint.filter(is_cut) {
+            show_above(ui, rect, hint);
         }
         let left = self.since + STAYS - now;
         if left > 0.0 && !text_of(message).is_empty() {
@@ -105,13 +108,20 @@ impl StatusLine {
     }
 }
 
-/// Shows a hint beside the pointer, whole, once the pointer has rested.
-fn show_at_pointer(ui: &Ui, Hint { title, help }: &Hint) {
+/// The least width of a hint in the line, where its help may be drawn smaller.
+fn hinted(ui: &Ui, Hint { title, help }: &Hint) -> f32 {
+    width(ui.painter(), title, SMALL) + TITLE_GAP + width(ui.painter(), help, SMALL * SHRINK[SHRINK.len() - 1])
+}
+
+/// Shows a hint above the line, whole, once the pointer has rested: beside the pointer it would hide what one compares.
+fn show_above(ui: &Ui, rect: Rect, Hint { title, help }: &Hint) {
     let (rested, is_down) = ui.input(|input| (input.pointer.time_since_last_movement(), input.pointer.any_down()));
     if rested < REST {
         ui.ctx().request_repaint_after(Duration::from_secs_f32(REST - rested));
     } else if !is_down && !Popup::is_any_open(ui.ctx()) && !ui.ctx().egui_wants_keyboard_input() {
-        let tip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), Id::unique("hint"), PopupAnchor::Pointer);
+        let anchor = PopupAnchor::ParentRect(rect);
+        let mut tip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), Id::unique("hint"), anchor);
+        tip.popup = tip.popup.align(RectAlign::TOP_START);
         tip.width(WIDEST).show(|ui| {
             ui.strong(title);
             if !help.is_empty() {
@@ -127,7 +137,8 @@ fn text_of(message: &Said) -> &str {
     text
 }
 
-fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, said: &Said, right: &str, palette: &Palette) {
+/// Paints the line. Returns the room for a message or a hint.
+fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, said: &Said, right: &str, palette: &Palette) -> f32 {
     let (painter, message) = (ui.painter(), text_of(said));
     let right_width = width(painter, right, SMALL);
     line(painter, rect, Align2::RIGHT_CENTER, right, SMALL, palette.muted);
@@ -143,7 +154,7 @@ fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, said: &Said, right: &str, pal
     match hint {
         Some(Hint { title, help }) => {
             let title = line(painter, left, Align2::LEFT_CENTER, title, SMALL, palette.text);
-            let rest = Rect::from_min_max(pos2(title.right() + 10.0, left.top()), left.max);
+            let rest = Rect::from_min_max(pos2(title.right() + TITLE_GAP, left.top()), left.max);
             line(painter, rest, Align2::LEFT_CENTER, help, SMALL, palette.muted);
         }
         None => {
@@ -152,6 +163,7 @@ fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, said: &Said, right: &str, pal
             line(painter, left, Align2::LEFT_CENTER, message, SMALL, colour);
         }
     }
+    left.width()
 }
 
 #[cfg(test)]
@@ -184,7 +196,7 @@ mod tests {
         for (said, colour) in [(Ok("saved"), palette.text), (Err("refused"), palette.warning)] {
             let said = said.map(str::to_owned).map_err(str::to_owned);
             let mut output =
-                context.run_ui(egui::RawInput::default(), |ui| paint(ui, ui.max_rect(), None, &said, "", palette));
+                context.run_ui(egui::RawInput::default(), |ui| _ = paint(ui, ui.max_rect(), None, &said, "", palette));
             let words = text_of(&said);
             let is_it = |shape: &egui::epaint::ClippedShape| matches!(&shape.shape, egui::Shape::Text(text) if text.galley.text() == words && text.fallback_color == colour);
             assert!(output.shapes.iter().any(is_it), "{words}");
