@@ -4,6 +4,7 @@ use sprung::preset::catalogue::{Catalogue, Listed};
 use sprung::preset::library::Library;
 use sprung::preset::{Family, Playable};
 use sprung_picture::{Figure, small_figure};
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -78,6 +79,8 @@ pub(in crate::editor) struct Sounds {
     recent: Vec<String>,
     /// The bodies of presets, by their places in memory.
     figures: BTreeMap<usize, Figure>,
+    /// All sounds by their distance to the words for which they were last ranked.
+    ranked: RefCell<Option<(String, Vec<Arc<Listed>>)>>,
     /// Files of the user that could not be read, and why.
     pub(in crate::editor) broken: Vec<String>,
 }
@@ -99,7 +102,8 @@ impl Sounds {
             Playable::Kit(_) => None,
         };
         let figures = catalogue.sounds.iter().filter_map(figure).collect();
-        let mut sounds = Self { library, catalogue, favourites, recent: Vec::new(), figures, broken };
+        let mut sounds =
+            Self { library, catalogue, favourites, recent: Vec::new(), figures, ranked: RefCell::default(), broken };
         sounds.read_recent();
         sounds
     }
@@ -147,7 +151,12 @@ impl Sounds {
 
     /// The three sounds that are nearest to some words, among those that are wanted.
     pub(in crate::editor) fn nearest(&self, words: &str, is_wanted: impl Fn(&Listed) -> bool) -> Vec<Arc<Listed>> {
-        self.catalogue.nearest(words).into_iter().filter(|sound| is_wanted(sound)).take(NEAREST).collect()
+        let mut ranked = self.ranked.borrow_mut();
+        if ranked.as_ref().is_none_or(|(known, _)| known != words) {
+            *ranked = Some((words.to_owned(), self.catalogue.nearest(words)));
+        }
+        let all = ranked.iter().flat_map(|(_, sounds)| sounds);
+        all.filter(|sound| is_wanted(sound)).take(NEAREST).cloned().collect()
     }
 
     /// Adds a sound to the favourites or removes it. Returns a message if this cannot be stored.
