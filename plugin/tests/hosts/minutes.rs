@@ -8,22 +8,22 @@ use sprung::preset::Preset;
 use std::time::{Duration, Instant};
 
 /// Where things are in a new window.
-const BROWSE: [i16; 2] = [511, 23];
-const SAVE: [i16; 2] = [566, 23];
+const BROWSE: [i16; 2] = [613, 23];
+const SAVE: [i16; 2] = [668, 23];
 /// The tab *Sound*: a new window shows *Play*.
 const SOUND: [i16; 2] = [158, 23];
-const FIRST_SOUND: [i16; 2] = [266, 93];
+const FIRST_SOUND: [i16; 2] = [266, 117];
 const MODEL_TAB: [i16; 2] = [427, 326];
 const MODEL: [i16; 2] = [137, 400];
 const MATERIAL: [i16; 2] = [137, 425];
-const SPACE_TAB: [i16; 2] = [664, 326];
-const SPACE: [i16; 2] = [151, 396];
-const SIZE_VALUE: [i16; 2] = [225, 430];
-const MIX_VALUE: [i16; 2] = [151, 562];
+const SPACE_TAB: [i16; 2] = [672, 342];
+const SPACE: [i16; 2] = [415, 396];
+const SIZE_VALUE: [i16; 2] = [489, 430];
+const MIX_VALUE: [i16; 2] = [415, 562];
 /// Entries of the lists that open there.
 const MARIMBA: [i16; 2] = [266, 114];
 const GLASS: [i16; 2] = [133, 141];
-const ROOM: [i16; 2] = [179, 510];
+const ROOM: [i16; 2] = [443, 510];
 /// Left, top, right and bottom of the lowest line.
 const LINE: [u32; 4] = [8, 674, 700, 692];
 /// Blue, green and red of messages.
