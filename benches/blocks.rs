@@ -8,10 +8,10 @@ mod song;
 
 use song::{RATE, Sounds, song};
 use sprung::engine::EventKind;
-use sprung::io::{Song, song::SongEvent};
+use sprung::internals::threads::on_threads;
+use sprung::io::{Song, SongEvent};
 use sprung::params::{Choice, Param, Space};
 use sprung::preset::Preset;
-use sprung::render::on_threads;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 

@@ -8,10 +8,9 @@ mod song;
 
 use song::{RATE, Sounds, song};
 use sprung::engine::{Ensemble, Event, Workers};
-use sprung::io::Song;
-use sprung::io::song::SongEvent;
+use sprung::internals::threads::on_threads;
+use sprung::io::{Song, SongEvent};
 use sprung::preset::{Preset, Programs};
-use sprung::render::on_threads;
 use std::sync::Mutex;
 use std::time::Instant;
 

@@ -7,8 +7,8 @@
 mod struck;
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use sprung::dsp::mode_bank::{MAX_MODES, ModeBank, ModeSetup};
-use sprung::dsp::{CONTROL_FRAMES, Coefficients, HarmonicOscillator, Level};
+use sprung::dsp::{Coefficients, HarmonicOscillator, MAX_MODES, ModeBank, ModeSetup};
+use sprung::internals::{CONTROL_FRAMES, Level};
 use std::time::Duration;
 use struck::{StruckBank, Work};
 

@@ -1,8 +1,7 @@
 //! One mass: the step and the step with sweep.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use sprung::dsp::coefficients::Coefficients;
-use sprung::dsp::oscillator::HarmonicOscillator;
+use sprung::dsp::{Coefficients, HarmonicOscillator};
 use std::hint::black_box;
 
 /// Steps per measurement.

@@ -4,7 +4,7 @@ mod song;
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use song::Sounds;
-use sprung::render::on_threads;
+use sprung::internals::threads::on_threads;
 use std::time::Duration;
 
 fn render(criterion: &mut Criterion) {

@@ -7,11 +7,11 @@
 mod struck;
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use sprung::dsp::random::{key, uniform};
-use sprung::dsp::space::{
+use sprung::internals::random::{key, uniform};
+use sprung::internals::space::{
     BoxBody, Decay, ModalReverb, Overdrive, Plate, Resonator, Room, Soundbox, Spring, Strings, Tone, Tremolo, Width,
 };
-use sprung::dsp::{CONTROL_FRAMES, Level};
+use sprung::internals::{CONTROL_FRAMES, Level};
 use std::time::Duration;
 use struck::{StruckBank, Work};
 

@@ -4,8 +4,8 @@ mod chord;
 
 use chord::{Chord, FRAMES, moving, patch, routed};
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use sprung::dsp::Level;
 use sprung::engine::{Ensemble, Synth};
+use sprung::internals::Level;
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::preset::Preset;

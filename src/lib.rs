@@ -82,13 +82,15 @@ pub mod analysis;
 pub mod batch;
 pub mod dsp;
 pub mod engine;
-pub mod error;
+mod error;
 #[cfg(feature = "analysis")]
 pub mod figure;
+#[doc(hidden)]
+pub mod internals;
 pub mod io;
 #[cfg(feature = "lab")]
 pub mod lab;
-pub mod manual;
+mod manual;
 pub mod params;
 pub mod patch;
 pub mod preset;
@@ -97,11 +99,11 @@ pub mod realtime;
 #[cfg(feature = "render")]
 pub mod render;
 #[cfg(feature = "batch")]
-pub mod request;
+mod request;
 #[cfg(feature = "batch")]
 pub mod sampler;
 pub mod sound;
-pub mod text;
+mod text;
 pub mod units;
 
 pub use error::{Error, Result};

@@ -1,6 +1,6 @@
 //! Chords on a synth, which the benches of whole instruments time.
 
-use sprung::dsp::mode_bank::MAX_MODES;
+use sprung::dsp::MAX_MODES;
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::Param;
 use sprung::patch::routes::{Route, Routes, Source, amount_param};

@@ -1,8 +1,8 @@
 //! Struck banks at work, which the benches time and whose instructions `cargo xtask callgrind` counts.
 
-use sprung::dsp::CONTROL_FRAMES;
 use sprung::dsp::exciter::{BurstSetup, Drive, Exciter, Stroke};
-use sprung::dsp::mode_bank::{ExcitationGains, ExcitationRows, MAX_MODES, ModeBank, ModeSetup};
+use sprung::dsp::{ExcitationGains, ExcitationRows, MAX_MODES, ModeBank, ModeSetup};
+use sprung::internals::CONTROL_FRAMES;
 
 /// The kinds of work of a bank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,10 +11,10 @@ use nice_plug::prelude::*;
 use nice_plug_core::midi::{Channel, Key, VoiceID};
 use nice_plug_egui::RepaintNotifier;
 use rtrb::Consumer;
-use sprung::engine::synth::Outputs;
-use sprung::engine::{Event, EventKind, NoteId, Snapshot, Synth, TelemetryWriter};
+use sprung::engine::{Event, EventKind, NoteId, Outputs, Snapshot, Synth};
+use sprung::internals::display::TelemetryWriter;
 use sprung::params::{Change, PARAM_COUNT, PARAMS, Param};
-use sprung::sound::kit::KEYS;
+use sprung::sound::KEYS;
 use sprung::units::mono_from_stereo;
 use std::ops::Range;
 use std::sync::Arc;
@@ -28,7 +28,7 @@ const MONO_FRAMES: usize = 256;
 pub(crate) const EVENT_CAPACITY: usize = 8192;
 
 /// Maximum number of voices.
-pub(crate) const MAX_VOICES: u32 = sprung::engine::voice_manager::MAX_VOICES as u32;
+pub(crate) const MAX_VOICES: u32 = sprung::internals::MAX_VOICES as u32;
 
 /// A synth that a host plays. Real-time safe once built.
 pub(crate) struct Live {

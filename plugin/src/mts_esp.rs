@@ -8,7 +8,7 @@
 
 use libloading::{Library, Symbol};
 use sprung::engine::EventKind;
-use sprung::sound::kit::KEYS;
+use sprung::sound::KEYS;
 use sprung::units::key_from_frequency;
 use std::ffi::{c_char, c_schar};
 use std::path::PathBuf;

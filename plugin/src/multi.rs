@@ -3,8 +3,8 @@
 use crate::editor::SprungEditor;
 use crate::plugin::{STEREO_IN, Sprung, add_pages, layout, mono_input};
 use nice_plug::prelude::*;
-use sprung::engine::synth::Outputs;
-use sprung::sound::kit::OUTPUTS;
+use sprung::engine::Outputs;
+use sprung::sound::OUTPUTS;
 use std::num::NonZeroU32;
 use std::sync::Arc;
 

@@ -15,7 +15,7 @@ use crate::plugin::{Sprung, add_pages};
 use crate::state;
 use nice_plug::prelude::*;
 use nice_plug_core::params::internals::ParamPtr;
-use sprung::engine::Blend;
+use sprung::internals::space::Blend;
 use sprung::units::{mono_from_stereo, note_name, parse_key};
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -3,18 +3,22 @@
 //! It serves tests, documentation and people. Nothing here is real-time safe, and no sample of the engine depends on
 //! it. With the feature `fit` alone there are no digests, figures and measures.
 
-pub mod alignment;
-pub mod comparison;
-pub mod diff;
+pub(crate) mod alignment;
+pub(crate) mod comparison;
+pub(crate) mod diff;
 #[cfg(feature = "analysis")]
-pub mod digest;
+pub(crate) mod digest;
 #[cfg(feature = "analysis")]
 pub mod figure;
 pub mod fit;
-pub mod level;
+pub(crate) mod level;
 pub(crate) mod line;
-pub mod log_mel;
+pub(crate) mod log_mel;
 #[cfg(feature = "analysis")]
-pub mod measures;
+pub(crate) mod measures;
 pub mod modes;
-pub mod spectrum;
+pub(crate) mod spectrum;
+
+pub use alignment::Alignment;
+pub use comparison::{Comparison, Octave};
+pub use diff::Difference;

@@ -6,11 +6,10 @@ use super::quantity;
 use super::recording::{FigureArgs, read};
 use super::terminal::{complain, counted, print};
 use serde_json::json;
-use sprung::Result;
-use sprung::analysis::figure::modes::ModesFigure;
+use sprung::analysis::figure::ModesFigure;
 use sprung::analysis::modes::{Analysis, Common, Kind, Mode, Settings, Strike, common, modes};
-use sprung::figure;
-use sprung::io::Inputs;
+use sprung::internals::files::Inputs;
+use sprung::{Result, figure};
 use std::fmt::Write;
 use std::path::PathBuf;
 

@@ -5,7 +5,7 @@ use super::progress::Count;
 use super::terminal::{complain, complain_lines, counted};
 use super::{completion, quantity};
 use sprung::batch::{Batch, Done, FileFormat, Shard};
-use sprung::render::THREADS;
+use sprung::internals::threads::THREADS;
 use sprung::{Error, Result};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -110,7 +110,7 @@ fn make(args: &Args, counter: &Mutex<(Count, Option<Done>)>) -> Result<Done> {
 #[cfg(test)]
 mod tests {
     use clap::CommandFactory;
-    use sprung::request::Request;
+    use sprung::internals::request::Request;
     use std::collections::BTreeSet;
 
     #[test]

@@ -5,11 +5,11 @@ use super::terminal::{complain, counted, print};
 use super::{interrupt, quantity};
 use libm::log10;
 use serde_json::json;
-use sprung::analysis::comparison::Comparison;
+use sprung::analysis::Comparison;
 use sprung::analysis::figure::{Render, comparison_bytes};
-use sprung::analysis::level::mono;
-use sprung::analysis::log_mel;
-use sprung::io::Inputs;
+use sprung::internals::files::Inputs;
+use sprung::internals::measures::level::mono;
+use sprung::internals::measures::log_mel;
 use sprung::io::sound_file::{Recording, resampled};
 use sprung::{Error, Result};
 use std::borrow::Cow;
@@ -221,7 +221,7 @@ impl Report<'_> {
         let difference = self.found.map(|found| found.difference);
         let alignment = self.found.and_then(|found| found.alignment);
         let octaves: Option<Vec<_>> = self.found.map(|found| {
-            let octave = |octave: &sprung::analysis::comparison::Octave| {
+            let octave = |octave: &sprung::analysis::Octave| {
                 json!({
                     "frequency": octave.frequency,
                     "expected_db": octave.expected_db,

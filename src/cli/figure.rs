@@ -1,7 +1,6 @@
 //! Figures of rendered jobs.
 
-use sprung::analysis::figure::Render;
-use sprung::analysis::figure::sound::{DrawnMode, Ranges, SoundFigure};
+use sprung::analysis::figure::{DrawnMode, Ranges, Render, SoundFigure};
 use sprung::render::Job;
 use sprung::{Error, Result};
 

@@ -6,7 +6,7 @@ use super::quantity;
 use super::recording::{ending, read};
 use super::terminal::{complain, counted, print};
 use sprung::analysis::fit::{Family, Fitted, Settings, Take, VELOCITY, fit, report, take_velocities_from_names};
-use sprung::io::{Inputs, Output, Target};
+use sprung::internals::files::{Inputs, Output, Target};
 use sprung::units::parse_key;
 use sprung::{Error, Result};
 use std::ffi::OsStr;

@@ -3,7 +3,7 @@
 //! A signal that was ignored when the program started, as `nohup` does, stays ignored.
 
 use super::terminal::complain;
-use sprung::io::Output;
+use sprung::internals::files::Output;
 use sprung::{Error, Result};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};

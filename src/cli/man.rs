@@ -2,7 +2,7 @@
 
 use super::terminal::print;
 use clap_mangen::Man;
-use sprung::io::{Inputs, Output, Target};
+use sprung::internals::files::{Inputs, Output, Target};
 use sprung::{Error, Result};
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -3,7 +3,7 @@
 use super::terminal::print;
 use clap::builder::PossibleValuesParser;
 use sprung::Result;
-use sprung::manual::{CONTENTS, PAGES};
+use sprung::internals::text::{CONTENTS, PAGES};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:

@@ -3,8 +3,8 @@
 use super::terminal::print;
 use serde_json::json;
 use sprung::Result;
+use sprung::internals::request::quantity::decimal;
 use sprung::params::{Change, Curve, PARAMS, ParamInfo, Unit};
-use sprung::request::quantity::decimal;
 use std::fmt::Write;
 
 pub(super) const EXAMPLES: &str = "\

@@ -5,18 +5,18 @@ use super::sound::SoundArgs;
 use super::terminal::{complain, complain_lines, print, warn};
 use super::{completion, interrupt, quantity, view};
 use clap_complete::ArgValueCompleter;
-use sprung::io::{Inputs, Output, Target};
+use sprung::internals::files::{Inputs, Output, Target};
+use sprung::internals::learned::Controllers;
+use sprung::internals::library::Library;
+use sprung::internals::realtime::Recording;
+use sprung::internals::request::Sounds;
+use sprung::internals::text::printable;
 use sprung::params::Param;
-use sprung::params::learned::Controllers;
 use sprung::preset::Playable;
-use sprung::preset::library::Library;
 use sprung::realtime::{
-    Choice, Found, KitSender, LiveInputs, LiveSender, MidiIn, Player, Recording, Session, Setup, Status, device,
-    midi_ports,
+    Choice, Found, KitSender, LiveInputs, LiveSender, MidiIn, Player, Session, Setup, Status, device, midi_ports,
 };
 use sprung::render::BLOCKS;
-use sprung::request::Sounds;
-use sprung::text::printable;
 use sprung::{Error, Result};
 use std::io::IsTerminal;
 use std::path::PathBuf;

@@ -2,8 +2,8 @@
 
 use super::interrupt;
 use super::terminal::warn;
+use sprung::internals::files::{Inputs, Output, Target};
 use sprung::io::sound_file::Recording;
-use sprung::io::{Inputs, Output, Target};
 use sprung::{Error, Result};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Reads a sound file, or standard input for `-`, and prints warnings about it. Also returns its name for error
 /// messages.
 pub(super) fn read(path: &Path, inputs: &mut Inputs) -> Result<(Recording, String)> {
-    sprung::request::recording(path, inputs, &mut warn)
+    sprung::internals::request::recording(path, inputs, &mut warn)
 }
 
 /// The extension of a path in lower case, if it is one of `possible`; `option` names the option in the error.

@@ -1,7 +1,7 @@
 //! Options for reading the song that a command plays.
 
 use super::quantity;
-use sprung::request::SongRequest;
+use sprung::internals::request::SongRequest;
 
 /// How a song is read and played.
 #[derive(clap::Args)]

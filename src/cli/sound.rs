@@ -3,8 +3,8 @@
 use super::completion;
 use super::tuning::TuningArgs;
 use clap_complete::ArgValueCompleter;
+use sprung::internals::request::{SoundRequest, quantity};
 use sprung::params::Param;
-use sprung::request::{SoundRequest, quantity};
 use std::ffi::OsString;
 
 /// What sounds a song is played with.

@@ -1,7 +1,7 @@
 //! Writes to stdout and stderr, without control characters that would affect the terminal.
 
-pub(super) use sprung::text::counted;
-use sprung::text::{printable, printable_lines};
+pub(super) use sprung::internals::text::counted;
+use sprung::internals::text::{printable, printable_lines};
 use sprung::{Error, Result};
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};

@@ -1,6 +1,6 @@
 //! The tuning that a command uses: Scala's files, given with `--scale` and `--keymap`.
 
-use sprung::request::TuningRequest;
+use sprung::internals::request::TuningRequest;
 use std::path::PathBuf;
 
 /// How the keys are tuned.

@@ -13,7 +13,7 @@ pub(super) fn refuse(mut error: Error, command: &Command) -> ExitCode {
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip)]));
     }
     let plain = error.render().to_string();
-    if sprung::text::printable_lines(&plain) == plain {
+    if sprung::internals::text::printable_lines(&plain) == plain {
         // Printed with colours. If stderr is closed, nothing can be reported.
         let _ = error.print();
     } else {

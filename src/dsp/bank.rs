@@ -18,7 +18,7 @@ pub(crate) enum Recurrence {
 /// A bank of modes with either recurrence. Each method does the same as the method of [`ModeBank`] with its name. Real-time safe.
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant, reason = "both are large, and a voice has one of them without allocating")]
-pub enum Bank {
+pub(crate) enum Bank {
     /// By the exact recurrence.
     Exact(ModeBank),
     /// By the original formulas.

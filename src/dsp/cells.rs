@@ -15,7 +15,7 @@ pub(crate) const MAX_CELLS: usize = 8;
 
 /// A bank, with the frequency ratio and decay scale of each of its modes.
 #[derive(Clone)]
-pub struct Cell {
+pub(crate) struct Cell {
     bank: Bank,
     /// Frequency of each mode as a multiple of the note's frequency, and its T60 as a multiple of the note's decay.
     ratios: [f64; MAX_MODES],
@@ -42,7 +42,7 @@ impl Cell {
 /// The cells of one voice. Modes are numbered consecutively through all cells, and energies are added up in that order.
 /// Cells are moved between owners: only `Cell::new` and copies allocate, and everything else is real-time safe.
 #[derive(Clone)]
-pub struct Cells {
+pub(crate) struct Cells {
     cells: [Option<Box<Cell>>; MAX_CELLS],
     /// Number of modes of all cells together.
     len: usize,

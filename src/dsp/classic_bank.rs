@@ -24,7 +24,7 @@ const MOST_GAIN: f64 = 8.0;
 /// becomes unstable. Second, since a moving sweep can add energy to a mode, its amplitude is limited to 8 times the
 /// amplitude that strikes have requested.
 #[derive(Clone, Debug)]
-pub struct ClassicBank {
+pub(crate) struct ClassicBank {
     sample_rate: f64,
     len: usize,
     modes: [Mode; MAX_MODES],

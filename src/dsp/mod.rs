@@ -2,36 +2,34 @@
 //!
 //! Real-time safe, except where noted.
 
-pub mod bank;
-pub mod cells;
-pub mod classic_bank;
-pub mod coefficients;
+pub(crate) mod bank;
+pub(crate) mod cells;
+pub(crate) mod classic_bank;
+pub(crate) mod coefficients;
 pub mod exciter;
 pub(crate) mod fader;
-pub mod limiter;
-pub mod mode_bank;
-pub mod oscillator;
-pub mod pitch;
-pub mod power;
-pub mod ramp;
-pub mod random;
-pub mod real;
+pub(crate) mod limiter;
+pub(crate) mod mode_bank;
+pub(crate) mod oscillator;
+pub(crate) mod pitch;
+pub(crate) mod power;
+pub(crate) mod ramp;
+pub(crate) mod random;
+pub(crate) mod real;
 pub(crate) mod series;
 #[allow(unsafe_code)]
-pub mod simd;
+pub(crate) mod simd;
 pub(crate) mod smoothed;
-pub mod space;
-pub mod true_peak;
+pub(crate) mod space;
+pub(crate) mod true_peak;
 
-pub use bank::Bank;
-pub use cells::{Cell, Cells};
-pub use classic_bank::ClassicBank;
+pub(crate) use cells::Cell;
+pub(crate) use classic_bank::ClassicBank;
 pub use coefficients::Coefficients;
-pub use limiter::Limiter;
-pub use mode_bank::ModeBank;
+pub(crate) use limiter::Limiter;
+pub use mode_bank::{ExcitationGains, ExcitationRows, MAX_MODES, ModeBank, ModeRows, ModeSetup};
 pub use oscillator::HarmonicOscillator;
 pub(crate) use power::power_of_two;
-pub use simd::Level;
 
 /// Frames between two control ticks. Must not change: pitch and gain move linearly between ticks, so all samples depend on
 /// it.

@@ -1,9 +1,9 @@
 //! Figures as SVG text or PNG bytes from the same drawing code, with a font that is part of the crate, and HTML pages.
 
-pub mod colour;
-pub mod envelope;
-pub mod page;
-pub mod panel;
+pub(crate) mod colour;
+pub(crate) mod envelope;
+pub(crate) mod page;
+pub(crate) mod panel;
 
 use crate::error::{Error, Result};
 use plotters::coord::Shift;

@@ -4,12 +4,12 @@ mod bars;
 #[cfg(feature = "batch")]
 mod file_format;
 #[cfg(feature = "batch")]
-pub mod flac;
-pub mod inputs;
+pub(crate) mod flac;
+pub(crate) mod inputs;
 #[cfg(feature = "batch")]
 mod journal;
 pub mod midi;
-pub mod output;
+pub(crate) mod output;
 mod quantise;
 #[cfg(feature = "render")]
 mod riff;
@@ -17,26 +17,26 @@ mod riff;
 mod room;
 #[cfg(feature = "render")]
 mod sampler_chunk;
-pub mod song;
+pub(crate) mod song;
 mod song_cursor;
 #[cfg(feature = "fit")]
 pub mod sound_file;
-pub mod target;
+pub(crate) mod target;
 mod tempo;
 mod temporary;
 #[cfg(feature = "render")]
-pub mod wav;
+pub(crate) mod wav;
 #[cfg(feature = "render")]
 mod wav_format;
 
 pub use bars::SongTime;
 #[cfg(feature = "batch")]
 pub use file_format::FileFormat;
-pub use inputs::Inputs;
+pub(crate) use inputs::Inputs;
 #[cfg(feature = "batch")]
 pub(crate) use journal::Journal;
 pub(crate) use midi::{MidiFile, Reading};
-pub use output::Output;
+pub(crate) use output::Output;
 pub(crate) use quantise::quantise;
 #[cfg(feature = "render")]
 pub use sampler_chunk::Loop;
@@ -44,7 +44,7 @@ pub use sampler_chunk::Loop;
 pub(crate) use sampler_chunk::MIDDLE_C;
 pub use song::{Song, SongEvent};
 pub(crate) use song_cursor::{SILENCE_INTERVAL, SongCursor};
-pub use target::Target;
+pub(crate) use target::Target;
 #[cfg(feature = "render")]
 pub use wav::WavWriter;
 #[cfg(feature = "render")]

@@ -12,7 +12,7 @@
 //! All arithmetic is in `f64`; nothing here is real-time safe, and the instrument does not depend on it.
 //!
 //! ```
-//! use sprung::lab::{method::Method, system::{State, System}, trajectory};
+//! use sprung::lab::{Method, State, System, trajectory};
 //!
 //! let spring = System::linear(1.0, 50.0, 0.0)?;
 //! let start = State { x: 0.5, v: 0.0 };
@@ -21,18 +21,23 @@
 //! # Ok::<(), sprung::Error>(())
 //! ```
 
-pub mod amplification;
+pub(crate) mod amplification;
 pub mod animation;
-pub mod closed_form;
+pub(crate) mod closed_form;
 pub mod comparison;
 pub mod convergence;
-pub mod energy;
+pub(crate) mod energy;
 pub mod figure;
-pub mod method;
+pub(crate) mod method;
 pub mod pitch;
 pub mod reference;
 pub mod report;
 pub mod sound;
 pub mod stability;
-pub mod system;
+pub(crate) mod system;
 pub mod trajectory;
+
+pub use amplification::Tone;
+pub use closed_form::ClosedForm;
+pub use method::{Integrator, Method, Order};
+pub use system::{Force, Spring, State, System};

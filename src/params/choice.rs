@@ -26,14 +26,9 @@ macro_rules! choices {
                 $($(#[$help])* $variant,)*
             }
 
-            impl $name {
-                /// Names of the choices, in order.
-                pub const NAMES: &'static [&'static str] = &[$($text),*];
-            }
-
             impl Choice for $name {
                 const ALL: &'static [Self] = &[$($name::$variant),*];
-                const NAMES: &'static [&'static str] = $name::NAMES;
+                const NAMES: &'static [&'static str] = &[$($text),*];
 
                 fn value(self) -> f32 {
                     self as u8 as f32

@@ -82,7 +82,7 @@ pub struct ParamInfo {
 
 mod choice;
 mod knob;
-pub mod learned;
+pub(crate) mod learned;
 mod table;
 mod text;
 mod values;

@@ -7,7 +7,7 @@ use std::io::Read;
 use std::path::Path;
 
 /// Maximum size of a preset or kit file in bytes: a kit may have 128 presets in it.
-pub const MAX_FILE_SIZE: u64 = 16 << 20;
+pub(crate) const MAX_FILE_SIZE: u64 = 16 << 20;
 
 impl Preset {
     /// Reads a preset. `origin` names the text in errors: a path, or another source.

@@ -1,9 +1,9 @@
 //! Presets and kits: a patch with name, author, tags, comment and details, as a file or built in, and presets assigned to keys.
 
-mod about;
-mod body;
+pub(crate) mod about;
+pub(crate) mod body;
 mod body_table;
-pub mod catalogue;
+pub(crate) mod catalogue;
 mod complaints;
 mod custom_modes;
 mod factory;
@@ -13,10 +13,10 @@ mod guide;
 mod kit;
 mod kit_file;
 mod kit_load;
-pub mod library;
+pub(crate) mod library;
 mod load;
 mod mode_list;
-mod pair;
+pub(crate) mod pair;
 mod phrase;
 mod programs;
 mod routes;
@@ -28,13 +28,11 @@ use crate::patch::Patch;
 use crate::sound::{Kit, Sound};
 use std::sync::Arc;
 
-pub use about::with_ending;
-pub use body::{body_of_modes, modes_of_body};
+pub(crate) use body::modes_of_body;
 pub use guide::{Family, Guide};
 pub use kit::{KitPreset, Playable};
 pub(crate) use kit_load::is_file_name;
-pub use load::MAX_FILE_SIZE;
-pub use pair::{LINK_KINDS, modes_of_pair, pair_of_modes};
+pub(crate) use load::MAX_FILE_SIZE;
 pub use phrase::{Phrase, PhraseNote};
 pub use programs::Programs;
 pub use tuning::OwnTuning;

@@ -7,27 +7,25 @@
 //! the same player, so the song, the sound and the recording continue where they were. `block_clock` says when an event
 //! sounds.
 
-pub mod block_clock;
-pub mod convert;
+pub(crate) mod block_clock;
+pub(crate) mod convert;
 pub mod device;
-mod fade;
+pub(crate) mod fade;
 mod jack_midi;
-pub mod live;
+pub(crate) mod live;
 mod midi_in;
 pub mod midi_ports;
-pub mod player;
-pub mod recorder;
-pub mod session;
-pub mod status;
-pub mod stream;
+pub(crate) mod player;
+pub(crate) mod recorder;
+pub(crate) mod session;
+pub(crate) mod status;
+pub(crate) mod stream;
 
-pub use block_clock::{BlockClock, Moment, Stamp};
+pub(crate) use block_clock::BlockClock;
+pub use block_clock::{Moment, Stamp};
 pub use device::{Choice, Found};
-pub use fade::Fade;
-pub use jack_midi::JackMidi;
 pub use live::{LiveEvent, LiveInputs, LiveSender};
 pub use midi_in::MidiIn;
-pub use midi_ports::{MidiPorts, Wanted};
 pub use player::{KitSender, Player, Setup};
 pub use recorder::{Recorded, Recording, Tap};
 pub use session::Session;

@@ -12,23 +12,20 @@
 //! its length.
 
 mod job;
-pub mod labels;
-mod looped;
-pub mod meter;
-mod stems;
+pub(crate) mod labels;
+pub(crate) mod looped;
+pub(crate) mod meter;
+pub(crate) mod stems;
 mod stream;
 #[cfg(test)]
 mod tests;
-mod threads;
-mod wav;
+pub(crate) mod threads;
+pub(crate) mod wav;
 
 pub use crate::dsp::limiter::Work as LimiterWork;
 pub use crate::engine::synth::SAMPLE_RATES;
 pub use job::{BLOCKS, Job, Options, Rendered, Tail};
 pub(crate) use labels::{ModeLabel, NoteLabel};
-pub use looped::to_looped_wav;
-pub use meter::{Levels, Meter};
-pub use stems::{Stem, StemsReport, stems_of, to_stem_wavs};
-pub use threads::{THREADS, on_threads};
+pub(crate) use threads::on_threads;
 pub(crate) use wav::to_labelled_wav;
-pub use wav::{Delivery, Level, Progress, Report, to_wav};
+pub use wav::{Delivery, Level, Progress, Report};

@@ -1,6 +1,7 @@
 //! Tests of lengths, tails and threads of renderings.
 
-use super::{Delivery, Job, Options, Progress, Rendered, Tail, on_threads, to_wav};
+use super::wav::to_wav;
+use super::{Delivery, Job, Options, Progress, Rendered, Tail, on_threads};
 use crate::engine::EventKind;
 use crate::error::Error;
 use crate::io::{Inputs, Output, Song, SongEvent, Target};

@@ -16,15 +16,15 @@ pub(crate) mod blown;
 pub mod bodies;
 mod collector;
 pub(crate) mod contact;
-pub mod coupled;
-pub mod kit;
+pub(crate) mod coupled;
+pub(crate) mod kit;
 mod mix;
 pub mod pairs;
 pub mod tuning;
 
 pub use collector::Collector;
 pub use contact::{Contact, contact_time};
-pub use kit::{Kit, Pad};
+pub use kit::{KEYS, Kit, OUTPUTS, Pad};
 pub use mix::Mix;
 pub use tuning::Tuning;
 

@@ -1,7 +1,7 @@
 //! Bad input causes one message and a non-zero exit code, leaves nothing behind, and never panics.
 
 use crate::{Sandbox, end, exists, note_on, song};
-use sprung::dsp::random;
+use sprung::internals::random;
 
 #[test]
 fn midi_files() {

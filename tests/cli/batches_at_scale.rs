@@ -3,7 +3,7 @@
 use crate::Sandbox;
 use crate::batches::{files, start};
 use sha2::{Digest, Sha256};
-use sprung::dsp::random::{key, unit};
+use sprung::internals::random::{key, unit};
 use std::fs;
 use std::time::{Duration, Instant, SystemTime};
 

@@ -1,8 +1,8 @@
 //! Listings of the command: presets, parameters, manual pages, completion scripts.
 
 use crate::Sandbox;
+use sprung::internals::library::Library;
 use sprung::params::{PARAMS, Unit};
-use sprung::preset::library::Library;
 use sprung::preset::{KitPreset, Playable, Preset};
 use std::process::{Command, Stdio};
 

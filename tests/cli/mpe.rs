@@ -3,7 +3,7 @@
 use crate::damped_sine::fit;
 use midly::num::{u4, u7, u14, u15, u24, u28};
 use midly::{Format, Header, MetaMessage, MidiMessage, PitchBend, Smf, Timing, TrackEvent, TrackEventKind};
-use sprung::dsp::CONTROL_FRAMES;
+use sprung::internals::CONTROL_FRAMES;
 use sprung::units::frequency_from_key;
 use std::path::Path;
 use std::process::Command;

@@ -1,6 +1,6 @@
 //! Recordings that tests make.
 
-use sprung::dsp::random::uniform;
+use sprung::internals::random::uniform;
 
 /// A WAV of interleaved floats.
 pub(crate) fn wav(samples: &[f32], sample_rate: u32, channels: u16) -> Vec<u8> {

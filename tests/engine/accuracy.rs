@@ -1,10 +1,11 @@
 //! The rendered frequency and T60 of a single mass are the requested ones, measured on rendered audio.
 
 use crate::damped_sine::{DampedSine, fit_unknown};
-use sprung::io::{Inputs, Output, SampleFormat, Song, Target};
+use sprung::internals::files::{Inputs, Output, Target, to_wav};
+use sprung::io::{SampleFormat, Song};
 use sprung::params::Param;
 use sprung::patch::Patch;
-use sprung::render::{Delivery, Job, Level, Options, Tail, to_wav};
+use sprung::render::{Delivery, Job, Level, Options, Tail};
 use sprung::sound::Kit;
 use sprung::units::key_from_frequency;
 use std::path::Path;

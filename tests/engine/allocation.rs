@@ -2,9 +2,9 @@
 
 use assert_no_alloc::{assert_no_alloc, violation_count};
 use sprung::engine::{Ensemble, Event, EventKind, Expression, NoteId, Notes, Synth};
+use sprung::internals::threads::Meter;
 use sprung::params::{PARAMS, Param};
 use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
-use sprung::render::Meter;
 use sprung::sound::bodies::{Body, Model};
 use sprung::sound::pairs::{Link, Pair};
 use sprung::sound::{Collector, Kit, Mix, Pad, Sound, Tuning};

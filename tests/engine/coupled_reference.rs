@@ -1,7 +1,7 @@
 //! Compares joined bodies with a dense eigenproblem solved by SciPy, made by `coupled/scipy_reference.py`.
 
-use sprung::dsp::random::Sequence;
-use sprung::sound::coupled::{BodyMode, CoupledMode, Joint, joined};
+use sprung::internals::coupled::{BodyMode, CoupledMode, Joint, joined};
+use sprung::internals::random::Sequence;
 use std::collections::BTreeMap;
 
 const NUMBERS: &str = include_str!("coupled/scipy_reference.csv");

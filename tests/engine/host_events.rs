@@ -2,8 +2,8 @@
 
 use crate::events::{event, on_with_id as on};
 use proptest::prelude::*;
-use sprung::dsp::CONTROL_FRAMES;
 use sprung::engine::{Event, EventKind, Expression, NoteId, Notes, Synth};
+use sprung::internals::CONTROL_FRAMES;
 use sprung::params::{PARAMS, Param};
 use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};

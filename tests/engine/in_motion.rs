@@ -2,9 +2,9 @@
 
 use crate::damped_sine::fit;
 use crate::events::{event, on, played};
-use sprung::analysis::spectrum::spectrum;
-use sprung::dsp::CONTROL_FRAMES;
 use sprung::engine::{Event, EventKind, Synth};
+use sprung::internals::CONTROL_FRAMES;
+use sprung::internals::measures::spectrum::spectrum;
 use sprung::params::Param;
 use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};

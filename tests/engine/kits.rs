@@ -1,13 +1,12 @@
 //! Kits: keys that play sounds of their own, choke each other, and are replaced while they ring.
 
 use crate::events::event;
+use sprung::Error;
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
-use sprung::error::Error;
 use sprung::params::{PARAMS, Param};
 use sprung::patch::Patch;
 use sprung::preset::{KitPreset, Playable, Preset};
-use sprung::sound::kit::KEYS;
-use sprung::sound::{Kit, Pad, Sound, Tuning};
+use sprung::sound::{KEYS, Kit, Pad, Sound, Tuning};
 use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;

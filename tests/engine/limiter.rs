@@ -4,9 +4,9 @@
 
 use ebur128::{EbuR128, Mode};
 use proptest::prelude::*;
-use sprung::dsp::Limiter;
-use sprung::dsp::random::uniform;
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
+use sprung::internals::random::uniform;
+use sprung::internals::space::Limiter;
 use sprung::io::Song;
 use sprung::params::Param;
 use sprung::patch::Patch;

@@ -1,8 +1,8 @@
 //! Nudges: one mass is pushed, and nothing else changes.
 
 use crate::events::{event, off, on};
-use sprung::dsp::CONTROL_FRAMES;
 use sprung::engine::{Event, EventKind, Expression, NoteId, Notes, Snapshot, Synth};
+use sprung::internals::CONTROL_FRAMES;
 use sprung::params::{Param, PlayMode};
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;

@@ -2,14 +2,12 @@
 
 use crate::events::event;
 use assert_no_alloc::{assert_no_alloc, violation_count};
-use sprung::dsp::random::{key, uniform};
-use sprung::engine::synth::Outputs;
-use sprung::engine::{Event, EventKind, Synth};
+use sprung::engine::{Event, EventKind, Outputs, Synth};
+use sprung::internals::random::{key, uniform};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
-use sprung::sound::kit::{KEYS, OUTPUTS};
-use sprung::sound::{Kit, Pad, Sound};
+use sprung::sound::{KEYS, Kit, OUTPUTS, Pad, Sound};
 use std::sync::Arc;
 
 const FRAMES: usize = 9_600;

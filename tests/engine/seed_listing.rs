@@ -48,8 +48,8 @@ fn listing(cases: &[Case]) -> Vec<f32> {
 
 /// Two hundred settings over the whole range in which the listing is stable.
 fn cases() -> Vec<Case> {
-    let stream = sprung::dsp::random::key(2, 2);
-    let unit = |n: u64| f64::from(sprung::dsp::random::uniform(stream, n)) * 0.5 + 0.5;
+    let stream = sprung::internals::random::key(2, 2);
+    let unit = |n: u64| f64::from(sprung::internals::random::uniform(stream, n)) * 0.5 + 0.5;
     let between = |n: u64, low: f64, high: f64| (low * libm::pow(high / low, unit(n))) as f32;
     (0..200)
         .map(|n| {

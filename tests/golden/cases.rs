@@ -2,11 +2,11 @@
 
 use crate::score::{BLOCKS, Score};
 use sprung::engine::{EventKind, NoteId};
+use sprung::internals::text::slug;
 use sprung::params::Param;
 use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
-use sprung::text::slug;
 
 /// Name of the case that plays the preset `init`.
 pub(crate) const INIT: &str = "preset-init";

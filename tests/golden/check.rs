@@ -2,7 +2,7 @@
 
 use crate::score::{Score, WHOLE};
 use sprung::analysis::figure::{self, Render};
-use sprung::analysis::{diff, digest::Digest, level};
+use sprung::internals::measures::{Digest, diff, level};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

@@ -1,7 +1,6 @@
 //! Compares the lab's true motions with SciPy's independent integrator; numbers from `scipy_reference.py`.
 
-use sprung::lab::system::{Force, Spring, State, System};
-use sprung::lab::{closed_form::ClosedForm, reference};
+use sprung::lab::{ClosedForm, Force, Spring, State, System, reference};
 
 const NUMBERS: &str = include_str!("scipy_reference.csv");
 

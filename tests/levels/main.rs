@@ -3,18 +3,17 @@
 mod space;
 
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
-use sprung::analysis::{diff, level};
-use sprung::dsp::Level;
-use sprung::dsp::random::{key, uniform};
 use sprung::engine::{Ensemble, Event, EventKind};
+use sprung::internals::Level;
+use sprung::internals::measures::{diff, level};
+use sprung::internals::random::{key, uniform};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::routes::{Response, Route, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
 use sprung::sound::bodies::{Body, Model};
-use sprung::sound::kit::{KEYS, Pad};
 use sprung::sound::pairs::{Link, Pair};
-use sprung::sound::{Kit, Sound};
+use sprung::sound::{KEYS, Kit, Pad, Sound};
 use std::sync::{Arc, Mutex};
 
 const FRAMES: usize = 24_000;

@@ -1,8 +1,8 @@
 //! Reverbs give the bits of scalar code on every level of vector instructions.
 
-use sprung::dsp::Level;
-use sprung::dsp::random::{key, uniform};
-use sprung::dsp::space::{Decay, ModalReverb, Plate, Resonator};
+use sprung::internals::Level;
+use sprung::internals::random::{key, uniform};
+use sprung::internals::space::{Decay, ModalReverb, Plate, Resonator};
 
 #[test]
 fn all_levels_have_the_bits_of_scalar_code() {

@@ -2,12 +2,13 @@
 
 use assert_no_alloc::{assert_no_alloc, violation_count};
 use sprung::engine::EventKind;
-use sprung::io::{Inputs, Output, Song, Target};
+use sprung::internals::files::{Inputs, Output, Target};
+use sprung::internals::learned::Controllers;
+use sprung::internals::realtime::{DeviceSample, Moment, Recording};
+use sprung::io::Song;
 use sprung::params::Param;
-use sprung::params::learned::Controllers;
 use sprung::patch::Patch;
-use sprung::realtime::convert::DeviceSample;
-use sprung::realtime::{LiveInputs, Moment, Player, Recording, Setup, Source, Status};
+use sprung::realtime::{LiveInputs, Player, Setup, Source, Status};
 use sprung::sound::{Kit, Tuning};
 use std::sync::Arc;
 use std::time::{Duration, Instant};

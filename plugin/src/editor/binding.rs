@@ -4,9 +4,9 @@ use crate::editor::controls::{Binding, Controls, Said};
 use crate::params::SprungParams;
 use egui::{Key, Ui};
 use nice_plug_core::context::PluginApi;
+use sprung::internals::learned::check_controller;
+use sprung::internals::library::Library;
 use sprung::params::ParamInfo;
-use sprung::params::learned::check_controller;
-use sprung::preset::library::Library;
 use std::time::Duration;
 
 /// Time between two checks for a movement.

@@ -60,7 +60,7 @@ use nice_plug_core::context::gui::GuiContext;
 use nice_plug_core::editor::dpi::{LogicalSize, NativeSize};
 use nice_plug_core::editor::{Editor, HostMethods, ParentWindowHandle, ResizeHint, SpawnedEditor};
 use nice_plug_egui::{EguiEditorHandle, EguiEditorState, EguiNiceSettings, create_egui_editor};
-use sprung::preset::library::Library;
+use sprung::internals::library::Library;
 use std::error::Error;
 use std::sync::Arc;
 use theme::LEAST_SIZE;

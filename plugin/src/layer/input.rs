@@ -12,7 +12,7 @@ use clap_sys::plugin::clap_plugin;
 use clap_sys::process::{CLAP_PROCESS_ERROR, clap_process, clap_process_status};
 use sprung::engine::EventKind;
 use sprung::engine::midi::parse_message;
-use sprung::params::learned::Movement;
+use sprung::internals::learned::Movement;
 use sprung::params::{ParamInfo, Unit};
 use std::ptr;
 

@@ -20,7 +20,7 @@ use clap_sys::host::clap_host;
 use clap_sys::plugin::clap_plugin;
 use clap_sys::process::{CLAP_PROCESS_ERROR, clap_process};
 use clap_sys::version::CLAP_VERSION;
-use sprung::params::learned::Controllers;
+use sprung::internals::learned::Controllers;
 use sprung::params::{PARAM_COUNT, PARAMS, Param};
 use sprung::preset::Playable;
 use std::ffi::{CStr, c_void};

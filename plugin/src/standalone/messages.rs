@@ -1,7 +1,7 @@
 //! Messages for the user, on stderr and in the window.
 
 use crate::params::SprungParams;
-use sprung::text::printable;
+use sprung::internals::text::printable;
 
 /// Prints a line on stderr; errors of printing are ignored.
 pub(super) fn print(line: &str) {

@@ -3,10 +3,9 @@
 use crate::live::Live;
 use crate::params::SprungParams;
 use sprung::engine::{Event, EventKind};
-use sprung::params::learned::{Movement, Takeover};
-use sprung::realtime::convert::{DeviceSample, interleave};
-use sprung::realtime::player::MAX_BLOCK;
-use sprung::realtime::{BlockClock, Fade, LiveInputs, Moment, Source, Status};
+use sprung::internals::learned::{Movement, Takeover};
+use sprung::internals::realtime::{BlockClock, DeviceSample, Fade, MAX_BLOCK, Moment, interleave};
+use sprung::realtime::{LiveInputs, Source, Status};
 use std::sync::Arc;
 
 /// Plays the window's sound. [`Source::fill`] is real-time safe.
@@ -88,10 +87,11 @@ mod tests {
     use crate::link::Touch;
     use crate::state::{State, VIEW};
     use sprung::engine::Synth;
+    use sprung::internals::learned::Controllers;
+    use sprung::internals::realtime::Stamp;
     use sprung::params::Param;
-    use sprung::params::learned::Controllers;
     use sprung::preset::Playable;
-    use sprung::realtime::{LiveEvent, Stamp};
+    use sprung::realtime::LiveEvent;
     use std::time::{Duration, Instant};
 
     const ON: EventKind = EventKind::NoteOn { key: 69, detune: 0.0, velocity: 1.0, id: None };

@@ -3,7 +3,7 @@
 use crate::devices::Chosen;
 use crate::params::SprungParams;
 use crate::state::State;
-use sprung::io::{Inputs, Output, Target};
+use sprung::internals::files::{Inputs, Output, Target};
 use std::ffi::OsString;
 use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Write as _};

@@ -4,7 +4,7 @@ use crate::host::Instance;
 use crate::host::reference::{assert_same_bits, render};
 use crate::patches::{enclosed, load, own_part, patch_in, patches, state_of_text};
 use crate::state::{FRAMES, RATE, strike, values};
-use sprung::dsp::random::{key, uniform};
+use sprung::internals::random::{key, uniform};
 use sprung::params::Param;
 use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
 

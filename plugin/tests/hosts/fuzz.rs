@@ -3,7 +3,7 @@
 use crate::host::reference::{assert_clean, assert_same_bits, assert_sound};
 use crate::host::{Address, Instance, Parameter, Rendered, Sent, Timed};
 use clack_host::events::event_types::NoteExpressionType as Kind;
-use sprung::dsp::random::{key, uniform};
+use sprung::internals::random::{key, uniform};
 
 /// A source of random choices.
 struct Dice {

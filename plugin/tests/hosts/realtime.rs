@@ -12,7 +12,7 @@ use crate::screen::Screen;
 use crate::window::{Editor, Parent};
 use clack_host::events::event_types::NoteExpressionType as Kind;
 use clack_host::prelude::*;
-use sprung::dsp::random::{key, uniform};
+use sprung::internals::random::{key, uniform};
 use std::ffi::CStr;
 use std::process::{Command, ExitCode};
 use std::sync::Mutex;

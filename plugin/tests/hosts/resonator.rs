@@ -10,7 +10,7 @@ use clack_extensions::audio_ports_config::{AudioPortsConfigBuffer, PluginAudioPo
 use clack_extensions::note_ports::PluginNotePorts;
 use clack_host::factory::plugin::PluginFactory;
 use clack_host::prelude::ClapId;
-use sprung::dsp::random::{key, uniform};
+use sprung::internals::random::{key, uniform};
 use sprung::io::Song;
 use sprung::params::Param;
 use sprung::patch::Patch;

@@ -1,8 +1,11 @@
 //! Figures of renders as PNG or SVG, with axes in units.
 
-pub mod modes;
+mod modes;
 mod panel;
-pub mod sound;
+pub(crate) mod sound;
+
+pub use modes::ModesFigure;
+pub use sound::{DrawnMode, Ranges, SoundFigure, modes_of};
 
 use super::level::mono;
 use crate::error::{Error, Result};

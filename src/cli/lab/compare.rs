@@ -4,11 +4,11 @@ use super::deliver::{Files, drawn};
 use super::system::{MethodArgs, SystemArgs};
 use super::table::{aligned, row};
 use sprung::Result;
+use sprung::internals::text::{measured, short};
 use sprung::lab::comparison::{Comparison, Setup};
 use sprung::lab::figure::comparison::ComparisonFigure;
 use sprung::lab::report;
 use sprung::lab::trajectory::Trajectory;
-use sprung::text::number::{measured, short};
 
 #[derive(clap::Args)]
 pub(super) struct Args {

@@ -4,10 +4,10 @@ use super::deliver::{Files, drawn};
 use super::system::{MethodArgs, SystemArgs};
 use super::table::{aligned, row};
 use sprung::Result;
+use sprung::internals::text::measured;
+use sprung::lab::Order;
 use sprung::lab::convergence::{Convergence, converge, halving};
 use sprung::lab::figure::convergence::{ConvergenceFigure, csv};
-use sprung::lab::method::Order;
-use sprung::text::number::measured;
 
 #[derive(clap::Args)]
 pub(super) struct Args {

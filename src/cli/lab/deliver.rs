@@ -3,7 +3,7 @@
 use super::super::interrupt;
 use super::super::terminal::{complain_lines, is_closed, print};
 use sprung::figure::{self, Picture};
-use sprung::io::{Inputs, Output, Target};
+use sprung::internals::files::{Inputs, Output, Target};
 use sprung::{Error, Result};
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};

@@ -4,10 +4,10 @@ use super::super::quantity;
 use super::deliver::{Files, drawn};
 use super::system::MethodArgs;
 use super::table::{aligned, row};
+use sprung::internals::text::short;
 use sprung::io::{SampleFormat, WavFormat, WavWriter};
 use sprung::lab::figure::sound::SoundFigure;
 use sprung::lab::sound::{Sound, listen};
-use sprung::text::number::short;
 use sprung::{Error, Result};
 use std::path::PathBuf;
 

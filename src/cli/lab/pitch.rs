@@ -5,9 +5,9 @@ use super::deliver::{Files, drawn};
 use super::system::MethodArgs;
 use super::table::{aligned, row};
 use sprung::Result;
+use sprung::internals::text::short;
 use sprung::lab::figure::pitch::{PitchFigure, csv, notes};
 use sprung::lab::pitch::{Note, Outcome, musical_steps};
-use sprung::text::number::short;
 
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]

@@ -3,10 +3,10 @@
 use super::deliver::{Files, drawn};
 use super::system::MethodArgs;
 use super::table::{aligned, row};
+use sprung::internals::text::measured;
+use sprung::lab::Method;
 use sprung::lab::figure::stability::{Region, StabilityFigure, csv};
-use sprung::lab::method::Method;
 use sprung::lab::stability::{cell, limit, spaced, theory};
-use sprung::text::number::measured;
 use sprung::{Error, Result};
 
 #[derive(clap::Args)]

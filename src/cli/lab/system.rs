@@ -5,8 +5,7 @@ use super::super::terminal::complain;
 use clap::ValueEnum;
 use clap_complete::{ArgValueCandidates, CompletionCandidate};
 use sprung::Result;
-use sprung::lab::method::Method;
-use sprung::lab::system::{Force, Spring, State, System};
+use sprung::lab::{Force, Method, Spring, State, System};
 
 /// Force law of the spring.
 #[derive(Clone, Copy, ValueEnum)]

@@ -7,7 +7,7 @@ use crate::{interrupt, quantity, recording};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::{Value, json};
 use sprung::analysis::fit::{LOOKED_AT, Model, Nearness};
-use sprung::io::Inputs;
+use sprung::internals::files::Inputs;
 use sprung::preset::{Playable, Preset};
 use sprung::units::{note_name, parse_key};
 use sprung::{Error, Result};

@@ -2,7 +2,7 @@
 
 use super::select::Select;
 use serde_json::{Value, json};
-use sprung::preset::catalogue::Listed;
+use sprung::internals::library::Listed;
 use sprung::preset::{Guide, Playable, Programs};
 use sprung::units::note_name;
 use std::fmt::Write;

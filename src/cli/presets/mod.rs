@@ -11,12 +11,13 @@ use crate::recording::FigureArgs;
 use crate::terminal::{complain, print};
 use clap::Subcommand;
 use clap_complete::ArgValueCompleter;
-use sprung::analysis::figure::sound::modes_of;
-use sprung::io::{Inputs, Song};
+use sprung::analysis::figure::modes_of;
+use sprung::internals::files::Inputs;
+use sprung::internals::text::printable;
+use sprung::io::Song;
 use sprung::params::Param;
 use sprung::preset::Playable;
 use sprung::render::{Job, Options, Tail};
-use sprung::text::printable;
 use sprung::units::{frequency_from_key, note_name};
 use sprung::{Error, Result};
 use std::ffi::{OsStr, OsString};
@@ -83,7 +84,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 
 /// Loads the preset or kit that the user names.
 fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
-    sprung::request::playable(name, inputs)
+    sprung::internals::request::playable(name, inputs)
 }
 
 /// Velocity of the note with which a preset is drawn, and its length in seconds.

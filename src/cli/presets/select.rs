@@ -2,9 +2,8 @@
 
 use crate::terminal::warn;
 use clap::builder::PossibleValuesParser;
+use sprung::internals::library::{Catalogue, Library, Listed};
 use sprung::preset::Family;
-use sprung::preset::catalogue::{Catalogue, Listed};
-use sprung::preset::library::Library;
 use std::sync::Arc;
 
 fn families() -> PossibleValuesParser {

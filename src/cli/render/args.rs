@@ -5,9 +5,10 @@ use crate::sound::SoundArgs;
 use crate::{completion, quantity};
 use clap::ArgGroup;
 use sprung::Result;
+use sprung::internals::request::{Request, SongRequest};
+use sprung::internals::threads::THREADS;
 use sprung::io::{FileFormat, SampleFormat, SongTime, WavFormat};
-use sprung::render::{BLOCKS, Job, Level, THREADS, Tail};
-use sprung::request::{Request, SongRequest};
+use sprung::render::{BLOCKS, Job, Level, Tail};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]

@@ -2,7 +2,7 @@
 
 use crate::figure::drawn;
 use sprung::Result;
-use sprung::analysis::figure::sound::{DrawnMode, modes_of};
+use sprung::analysis::figure::{DrawnMode, modes_of};
 use sprung::params::Param;
 use sprung::render::Job;
 use sprung::units::{frequency_from_key, parse_key};

@@ -7,7 +7,7 @@ mod report;
 mod stems;
 
 pub(super) use args::Args;
-use sprung::io::Target;
+use sprung::internals::files::Target;
 use sprung::{Error, Result};
 
 pub(super) const EXAMPLES: &str = "\

@@ -5,9 +5,11 @@ use super::{figure, report};
 use crate::progress::Bar;
 use crate::terminal::warn;
 use crate::{interrupt, recording};
-use sprung::io::{Inputs, Output, Target, flac};
-use sprung::render::{Progress, on_threads, to_looped_wav, to_wav};
-use sprung::request::Request;
+use sprung::internals::files::{Inputs, Output, Target, to_looped_wav, to_wav};
+use sprung::internals::flac;
+use sprung::internals::request::Request;
+use sprung::internals::threads::on_threads;
+use sprung::render::Progress;
 use sprung::{Error, Result};
 use std::io::IsTerminal;
 

@@ -3,7 +3,8 @@
 use crate::terminal::{complain, complain_lines, counted, print};
 use serde_json::json;
 use sprung::Result;
-use sprung::io::{SampleFormat, Target};
+use sprung::internals::files::Target;
+use sprung::io::SampleFormat;
 use sprung::render::Report;
 
 /// Tells what came of a rendering whose mix had this gain.

@@ -4,14 +4,13 @@ use super::desk::{Desk, MakeKit};
 use super::keyboard::Keyboard;
 use super::layout::Layout;
 use ratatui::layout::Rect;
-use sprung::engine::telemetry::Load;
 use sprung::engine::{EventKind, Snapshot};
+use sprung::internals::display::Load;
+use sprung::internals::library::{Catalogue, Library, Listed};
+use sprung::internals::text::printable;
 use sprung::params::{PARAMS, ParamInfo, Values};
-use sprung::preset::catalogue::{Catalogue, Listed};
-use sprung::preset::library::Library;
 use sprung::realtime::{KitSender, Status};
 use sprung::sound::Kit;
-use sprung::text::printable;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 

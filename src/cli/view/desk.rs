@@ -1,7 +1,7 @@
 //! The data that the view shows, and the senders through which it plays.
 
+use sprung::internals::library::Library;
 use sprung::preset::Playable;
-use sprung::preset::library::Library;
 use sprung::realtime::{KitSender, LiveSender, Status};
 use sprung::sound::Kit;
 use std::sync::Arc;

@@ -6,8 +6,8 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style, Stylize};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, List as Rows, ListState};
-use sprung::preset::catalogue::Listed;
-use sprung::text::printable;
+use sprung::internals::library::Listed;
+use sprung::internals::text::printable;
 use std::sync::Arc;
 
 /// Draws the list that is shown, with its search text in the title.

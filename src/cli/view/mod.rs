@@ -17,7 +17,7 @@ use ratatui::crossterm::event::{
     self, DisableMouseCapture, EnableMouseCapture, Event, KeyboardEnhancementFlags, PopKeyboardEnhancementFlags,
 };
 use ratatui::crossterm::{event::PushKeyboardEnhancementFlags, execute, terminal};
-use sprung::error::{Error, Result};
+use sprung::{Error, Result};
 use std::io::stdout;
 use std::time::{Duration, Instant};
 

@@ -1,10 +1,10 @@
 //! Saves the sound of a channel under a name, among the user's own sounds.
 
 use super::app::{App, Playing};
-use sprung::error::Error;
-use sprung::preset::catalogue::{Catalogue, Listed};
+use sprung::Error;
+use sprung::internals::library::{Catalogue, Listed};
+use sprung::internals::text::printable;
 use sprung::preset::{Playable, Preset};
-use sprung::text::printable;
 use std::sync::Arc;
 
 impl App {

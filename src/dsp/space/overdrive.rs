@@ -16,7 +16,7 @@ use std::f64::consts::LN_10;
 /// With a constant drive of 0 dB it does not change the signal. It is faded in and out within 20 ms. Real-time safe.
 ///
 /// ```
-/// let mut drive = sprung::dsp::space::Overdrive::new(48_000.0);
+/// let mut drive = sprung::internals::space::Overdrive::new(48_000.0);
 /// drive.set(12.0);
 /// let (mut left, mut right) = (vec![0.01; 4800], vec![1.0; 4800]);
 /// drive.process(&mut left, &mut right);

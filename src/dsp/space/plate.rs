@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 /// the plate does not favour any frequency, and its highest frequencies arrive first.
 ///
 /// ```
-/// use sprung::dsp::space::{Decay, ModalReverb, Plate, Resonator};
+/// use sprung::internals::space::{Decay, ModalReverb, Plate, Resonator};
 ///
 /// let sheet = Plate::default().modes();
 /// assert!(sheet.len() > 12_900, "every mode up to 10 kHz");

@@ -13,7 +13,7 @@ use std::f64::consts::FRAC_PI_2;
 /// with `set_levels(1.0, level)`: the strings are added to the input.
 ///
 /// ```
-/// use sprung::dsp::space::{Decay, ModalReverb, Resonator, Strings};
+/// use sprung::internals::space::{Decay, ModalReverb, Resonator, Strings};
 ///
 /// let chord = Strings::new([110.0, 165.0, 220.0, 277.18]);
 /// let mut strings = ModalReverb::new(Resonator::new(&chord.modes(), Decay { low: 6.0, high: 2.0 }, 48_000.0));

@@ -13,7 +13,7 @@ use std::f64::consts::{LN_10, PI};
 /// With constant gains of 0 dB it does not change the signal. Real-time safe.
 ///
 /// ```
-/// let mut tone = sprung::dsp::space::Tone::new(48_000.0);
+/// let mut tone = sprung::internals::space::Tone::new(48_000.0);
 /// tone.set(6.0, -3.0);
 /// let (mut left, mut right) = (vec![1.0; 48_000], vec![1.0; 48_000]);
 /// tone.process(&mut left, &mut right);

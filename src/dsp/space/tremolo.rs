@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 /// depth of 0 it does not change the signal, and the motor stands still. Real-time safe.
 ///
 /// ```
-/// let mut tremolo = sprung::dsp::space::Tremolo::new(48_000.0);
+/// let mut tremolo = sprung::internals::space::Tremolo::new(48_000.0);
 /// tremolo.set_rate(6.0);
 /// tremolo.set_depth(1.0);
 /// let (mut left, mut right) = (vec![1.0; 48_000], vec![1.0; 48_000]);

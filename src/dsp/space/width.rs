@@ -8,7 +8,7 @@ use crate::dsp::smoothed::Smoothed;
 /// does not change the signal. Real-time safe.
 ///
 /// ```
-/// let mut width = sprung::dsp::space::Width::new(48_000.0);
+/// let mut width = sprung::internals::space::Width::new(48_000.0);
 /// width.set(0.0);
 /// let (mut left, mut right) = (vec![1.0; 2000], vec![0.0; 2000]);
 /// width.process(&mut left, &mut right);

@@ -13,8 +13,8 @@ mod slots;
 mod voice;
 
 use super::note::{EndedNote, Note, Notes};
-pub use crate::params::{PlayMode, Priority};
-pub use footprint::Footprint;
+pub(crate) use crate::params::{PlayMode, Priority};
+pub(crate) use footprint::Footprint;
 use held_keys::HeldKeys;
 use pedals::Pedals;
 pub(crate) use pool::VoicePool;
@@ -23,7 +23,7 @@ pub(crate) use slot::MAX_UNISON;
 pub(crate) use slot::Slot;
 pub use slots::MAX_VOICES;
 use slots::Slots;
-pub use voice::{Unison, Voice};
+pub(crate) use voice::{Unison, Voice};
 
 /// Maximum number of ended notes that are kept until the host has collected them.
 pub(crate) const MAX_ENDED: usize = 1024;

@@ -4,7 +4,7 @@ use super::footprint::Footprint;
 use crate::engine::note::Note;
 
 /// Something that sounds one note at a time. All methods are called on the audio thread.
-pub trait Voice {
+pub(crate) trait Voice {
     /// The state of the instrument that a voice reads when a note starts.
     type Context;
     /// A block of modes. A voice takes as many cells as its note needs, and gives them back.
@@ -37,7 +37,7 @@ pub trait Voice {
 
 /// The position of a voice among the unison voices of one note.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Unison {
+pub(crate) struct Unison {
     /// Index, from 0.
     pub index: usize,
     /// Number of voices, at least 1.

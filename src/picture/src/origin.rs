@@ -1,7 +1,7 @@
 //! The origin of a sound's modes: a body, two joined bodies, or a table without a body.
 
+use sprung::internals::editor::{body_of_modes, modes_of_body, modes_of_pair, pair_of_modes};
 use sprung::patch::ModeTable;
-use sprung::preset::{body_of_modes, modes_of_body, modes_of_pair, pair_of_modes};
 use sprung::sound::bodies::{Body, Model, Pitch, Point};
 use sprung::sound::pairs::{Link, Pair};
 

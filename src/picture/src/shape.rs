@@ -132,7 +132,8 @@ impl BodyShape {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sprung::preset::{Preset, modes_of_body};
+    use sprung::internals::editor::modes_of_body;
+    use sprung::preset::Preset;
 
     #[test]
     fn a_string_moves_as_its_modes_do_and_its_ends_stay() {

@@ -4,13 +4,12 @@ use crate::failure::{Error, raised, told};
 use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sprung::io::Inputs;
+use sprung::internals::files::Inputs;
+use sprung::internals::library::{Catalogue, Library, Listed};
+use sprung::internals::request::playable;
+use sprung::internals::request::quantity::decimal;
 use sprung::params::{PARAMS, Param, Unit};
-use sprung::preset::catalogue::{Catalogue, Listed};
-use sprung::preset::library::Library;
 use sprung::preset::{Playable, Preset};
-use sprung::request::playable;
-use sprung::request::quantity::decimal;
 use std::ffi::OsStr;
 use std::sync::Arc;
 
@@ -20,7 +19,7 @@ pub(crate) struct NativePatch(Preset);
 
 fn param(id: &str) -> PyResult<Param> {
     Param::from_id(id).ok_or_else(|| {
-        let near = sprung::error::nearest(id, PARAMS.iter().map(|info| info.id));
+        let near = sprung::internals::nearest(id, PARAMS.iter().map(|info| info.id));
         let near = near.map_or(String::new(), |near| format!("; the nearest is {near}"));
         PyAttributeError::new_err(format!("there is no parameter ‘{id}’{near}"))
     })

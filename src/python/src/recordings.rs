@@ -3,12 +3,12 @@
 use crate::failure::{check_signals, raised, told, warn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sprung::analysis::comparison::Comparison;
+use sprung::analysis::Comparison;
 use sprung::analysis::fit::{Family, Settings as FitSettings, Take, fit as fitted_to};
 use sprung::analysis::modes::{self, Mode, Strike};
-use sprung::io::Inputs;
+use sprung::internals::files::Inputs;
+use sprung::internals::request::{quantity, recording};
 use sprung::io::sound_file::Recording;
-use sprung::request::{quantity, recording};
 use sprung::units::parse_key;
 use std::path::{Path, PathBuf};
 

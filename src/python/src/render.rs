@@ -4,9 +4,9 @@ use crate::failure::{check_signals, raised, told, warn};
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
-use sprung::io::{Inputs, Output, SampleFormat, Target, sound_file};
-use sprung::render::to_wav;
-use sprung::request::Request;
+use sprung::internals::files::{Inputs, Output, Target, to_wav};
+use sprung::internals::request::Request;
+use sprung::io::{SampleFormat, sound_file};
 use std::io::Seek;
 use std::time::{Duration, Instant};
 

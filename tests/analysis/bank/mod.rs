@@ -5,7 +5,7 @@ mod played;
 mod promises;
 
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
-use sprung::analysis::measures::preset::{Measure, SYNTHESIS, measure};
+use sprung::internals::measures::preset::{Measure, SYNTHESIS, measure};
 use sprung::params::Param;
 use sprung::preset::{Family, Guide, Preset};
 use sprung::units::note_name;

@@ -1,7 +1,7 @@
 //! Renders notes of presets and measures them.
 
-use sprung::analysis::spectrum::{Spectrum, peaks, spectrum};
 use sprung::engine::{Event, Synth};
+use sprung::internals::measures::spectrum::{Spectrum, peaks, spectrum};
 use sprung::preset::Preset;
 use sprung::units::mono_from_stereo;
 

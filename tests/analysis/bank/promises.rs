@@ -2,8 +2,8 @@
 
 use super::played::{RATE, decay, energy, event, note, partial_near, spectrum_from};
 use super::whole_bank;
-use sprung::analysis::measures::octaves::octaves;
 use sprung::engine::Synth;
+use sprung::internals::measures::octaves::octaves;
 use sprung::preset::{Family, KitPreset, Preset};
 use sprung::units::frequency_from_key;
 

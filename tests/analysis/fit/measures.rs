@@ -1,7 +1,7 @@
 //! Measures by which real instruments are judged, of a recording and of its fit.
 
 use super::played::{Stereo, mean};
-use sprung::analysis::measures::{Least, attack_flatness, from_onset, high_share, motion, partials};
+use sprung::internals::measures::{Least, attack_flatness, from_onset, high_share, motion, partials};
 
 /// Measures of the mean of both channels of a sound; the library documents each.
 #[derive(Clone, Copy, Debug)]

@@ -16,9 +16,9 @@ use measures::Measures;
 use played::{Outcome, fitted, in_parallel, log_mel_distance, preset_at};
 use sprung::Error;
 use sprung::analysis::fit::Family;
-use sprung::analysis::log_mel::RATE;
-use sprung::analysis::measures::{DRUMS, TUNED};
-use sprung::dsp::random::uniform;
+use sprung::internals::measures::log_mel::RATE;
+use sprung::internals::measures::{DRUMS, TUNED};
+use sprung::internals::random::uniform;
 use sprung::preset::Preset;
 
 /// Numbers of progress calls after which the fit is cancelled, and the number of calls that may follow.

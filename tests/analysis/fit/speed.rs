@@ -4,7 +4,7 @@ use super::clock::Clock;
 use super::played::Outcome;
 use libm::{cos, exp, log, pow, sin, sqrt};
 use sprung::analysis::modes::{Settings, modes};
-use sprung::dsp::random::{Sequence, key};
+use sprung::internals::random::{Sequence, key};
 use std::f64::consts::TAU;
 
 const RATE: f64 = 44_100.0;

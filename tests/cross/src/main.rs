@@ -14,7 +14,7 @@ mod songs;
 
 use score::{Score, WHOLE};
 use sha2::{Digest as _, Sha256};
-use sprung::dsp::Level;
+use sprung::internals::Level;
 
 /// Frames that share one short hash, as in `analysis::digest`.
 const CHUNK: usize = 4096;

@@ -1,6 +1,7 @@
 //! Bodies and their modes as computed by SciPy: the numbers in `scipy_reference.csv`.
 
-use sprung::sound::bodies::{Body, FIELDS, Model};
+use sprung::internals::editor::FIELDS;
+use sprung::sound::bodies::{Body, Model};
 
 pub(crate) const NUMBERS: &str = include_str!("scipy_reference.csv");
 

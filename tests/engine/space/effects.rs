@@ -2,7 +2,7 @@
 
 use super::signal::{RATE, blocks_are_equal, decibels, noise, rms};
 use assert_no_alloc::{assert_no_alloc, violation_count};
-use sprung::dsp::space::{Overdrive, Tone, Tremolo, Width};
+use sprung::internals::space::{Overdrive, Tone, Tremolo, Width};
 use std::f64::consts::TAU;
 
 fn sine(frequency: f64, amplitude: f64, frames: usize) -> Vec<f32> {

@@ -5,7 +5,7 @@ mod promises;
 mod signal;
 
 use signal::{RATE, correlation, decibels, impulse, noise, octave, rms, t60};
-use sprung::dsp::space::{Decay, ModalReverb, ModeSet, Plate, Resonator, Room, Spring, Strings};
+use sprung::internals::space::{Decay, ModalReverb, ModeSet, Plate, Resonator, Room, Spring, Strings};
 
 const OCTAVES: [f64; 7] = [125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0];
 

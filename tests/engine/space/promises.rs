@@ -3,8 +3,8 @@
 use super::reverb;
 use super::signal::{RATE, blocks_are_equal, decibels, impulse, noise, octave, peak, rms};
 use assert_no_alloc::{assert_no_alloc, violation_count};
-use sprung::dsp::random::{Sequence, key};
-use sprung::dsp::space::{BodyMode, Decay, ModalReverb, ModeSet, Plate, Resonator, Spring, Strings};
+use sprung::internals::random::{Sequence, key};
+use sprung::internals::space::{BodyMode, Decay, ModalReverb, ModeSet, Plate, Resonator, Spring, Strings};
 use std::sync::LazyLock;
 
 const DECAY: Decay = Decay { low: 0.4, high: 0.2 };

@@ -1,6 +1,6 @@
 //! Signals and measurements for the tests of the space.
 
-use sprung::dsp::random::{key, uniform};
+use sprung::internals::random::{key, uniform};
 use std::f64::consts::{LN_10, PI};
 
 /// Left and right.

@@ -5,7 +5,7 @@
 //! bound.
 
 use super::case::{Kind, PARAM_IDS, RECORD};
-use sprung::dsp::random::{Sequence, key};
+use sprung::internals::random::{Sequence, key};
 
 /// The parameters with the largest effect on pitch and damping: half of the cases set some of them.
 const MOVING: [&str; 9] =

@@ -2,9 +2,8 @@
 
 use super::bound::{Step, UNKNOWN, bound};
 use super::case::Case;
-use sprung::engine::synth::Outputs;
-use sprung::engine::{Ensemble, Event, Snapshot, Synth};
-use sprung::sound::kit::OUTPUTS;
+use sprung::engine::{Ensemble, Event, Outputs, Snapshot, Synth};
+use sprung::sound::OUTPUTS;
 
 /// Relative tolerance for single-precision rounding over all frames of a case.
 const TOLERANCE: f64 = 1e-3;

@@ -1,7 +1,7 @@
 //! `cargo xtask measure --beside`: where the factory's sounds of General MIDI stand beside two soundfonts.
 
-use sprung::analysis::measures::from_onset;
-use sprung::analysis::measures::preset::{is_sustained, measure, of_sound};
+use sprung::internals::measures::from_onset;
+use sprung::internals::measures::preset::{is_sustained, measure, of_sound};
 use sprung::io::sound_file;
 use sprung::preset::{Preset, Programs};
 use sprung::units::frequency_from_key;

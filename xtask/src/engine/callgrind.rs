@@ -6,10 +6,9 @@
 mod struck;
 
 use crate::shell::root;
-use sprung::dsp::CONTROL_FRAMES;
-use sprung::dsp::Level;
-use sprung::dsp::mode_bank::MAX_MODES;
+use sprung::dsp::MAX_MODES;
 use sprung::engine::{Ensemble, Synth};
+use sprung::internals::{CONTROL_FRAMES, Level};
 use sprung::patch::Patch;
 use std::fmt::Write as _;
 use std::process::Command;

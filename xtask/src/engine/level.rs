@@ -1,10 +1,10 @@
 //! `cargo xtask level`: measures the loudness of the factory's presets, and proposes gains that make it equal.
 
 use crate::shell::root;
-use sprung::analysis::measures::preset::{chord_peaks, loudness, wanted_loudness};
+use sprung::internals::measures::preset::{chord_peaks, loudness, wanted_loudness};
+use sprung::internals::text::slug;
 use sprung::params::Param;
 use sprung::preset::Preset;
-use sprung::text::slug;
 use std::fs;
 
 /// The most by which the limiter should lower a loud chord, in dB: half a decibel less than the bank's test allows.

@@ -1,7 +1,7 @@
 //! `cargo xtask measure`: measures every factory preset, and writes the page with the results.
 
 use crate::shell::root;
-use sprung::analysis::measures::preset::{Measure, SYNTHESIS, is_sustained, measure};
+use sprung::internals::measures::preset::{Measure, SYNTHESIS, is_sustained, measure};
 use sprung::preset::{Family, Preset};
 use std::fmt::Write;
 use std::fs;

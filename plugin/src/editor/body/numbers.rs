@@ -1,7 +1,7 @@
 //! The numbers of bodies and of their joint on the page of the body: names, values with units, and help texts.
 
-use sprung::sound::bodies::{Body, FIELDS};
-use sprung::sound::pairs::LINK_FIELDS;
+use sprung::internals::editor::{FIELDS, LINK_FIELDS};
+use sprung::sound::bodies::Body;
 use sprung_picture::Origin;
 
 /// One of two bodies, or the joint between them.

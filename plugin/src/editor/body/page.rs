@@ -14,7 +14,7 @@ use crate::editor::widgets::number;
 use crate::editor::widgets::text::{line, paragraph};
 use crate::link::Link;
 use egui::{Align2, Id, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, vec2};
-use sprung::preset::LINK_KINDS;
+use sprung::internals::editor::LINK_KINDS;
 use sprung::sound::bodies::{MATERIALS, Model};
 use sprung::units::number_in_unit;
 use sprung_picture::{Origin, model_name};

@@ -3,7 +3,7 @@
 use super::sounds::{Place, Sounds, place};
 use crate::editor::background::{Background, Progress};
 use sprung::analysis::fit::{LOOKED_AT, Model, Nearness};
-use sprung::preset::catalogue::Listed;
+use sprung::internals::library::Listed;
 use sprung::preset::{Playable, Preset};
 use sprung::{Error, Result};
 use std::sync::Arc;

@@ -6,7 +6,7 @@ use crate::editor::theme::{Palette, SMALL, TEXT};
 use crate::editor::widgets::text::line;
 use crate::editor::widgets::{list, outline};
 use egui::{Align2, Id, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
-use sprung::preset::catalogue::Listed;
+use sprung::internals::library::Listed;
 use std::f32::consts::TAU;
 use std::sync::Arc;
 

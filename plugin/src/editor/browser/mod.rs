@@ -19,8 +19,7 @@ use egui::{Id, Key, Rect, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, po
 use likeness::Likeness;
 use list::{List, ROW, row};
 use sounds::{Category, NONE, Sounds};
-use sprung::preset::catalogue::Listed;
-use sprung::preset::library::Library;
+use sprung::internals::library::{Library, Listed};
 use sprung::preset::{Guide, Playable};
 use std::sync::Arc;
 use tags::Tags;

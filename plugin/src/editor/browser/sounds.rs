@@ -1,7 +1,6 @@
 //! The sounds to choose from: the factory's and the user's own, by family, words and favourites.
 
-use sprung::preset::catalogue::{Catalogue, Listed};
-use sprung::preset::library::Library;
+use sprung::internals::library::{Catalogue, Library, Listed};
 use sprung::preset::{Family, Playable};
 use sprung_picture::{Figure, small_figure};
 use std::cell::RefCell;

@@ -4,7 +4,7 @@ use crate::editor::theme::{Palette, TEXT};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::width;
 use egui::{Rect, Ui, vec2};
-use sprung::preset::catalogue::Listed;
+use sprung::internals::library::Listed;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

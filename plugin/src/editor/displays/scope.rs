@@ -4,7 +4,7 @@ use super::spectrum::{self, FLOOR};
 use crate::editor::theme::{GAP, Palette, SMALL};
 use crate::editor::widgets::text::line;
 use egui::{Align2, Painter, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
-use sprung::engine::scope::SCOPE_FRAMES;
+use sprung::internals::display::SCOPE_FRAMES;
 use sprung::units::semitones_from_ratio;
 
 /// Number of frames that the waveform shows: half of those stored, so that it can begin at a zero crossing.

@@ -1,7 +1,7 @@
 //! The spectrum of the last frames of the sound: a fast Fourier transform of a windowed piece.
 
 use egui::Vec2;
-use sprung::engine::scope::SCOPE_FRAMES;
+use sprung::internals::display::SCOPE_FRAMES;
 use sprung::units::db_from_gain;
 use std::f32::consts::TAU;
 

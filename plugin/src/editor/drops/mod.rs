@@ -7,7 +7,7 @@ use crate::editor::controls::{Controls, Said};
 use crate::editor::pages::tuning;
 use crate::files;
 use egui::Ui;
-use sprung::preset::library::Library;
+use sprung::internals::library::Library;
 use std::path::{Path, PathBuf};
 
 /// The endings of files that can be dropped.

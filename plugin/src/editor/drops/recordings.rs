@@ -3,9 +3,9 @@
 use crate::editor::background::{Background, Progress};
 use crate::files;
 use sprung::analysis::fit::{Settings, Take, VELOCITY, fit, take_velocities_from_names};
+use sprung::internals::text::printable;
 use sprung::io::sound_file;
 use sprung::preset::Preset;
-use sprung::text::printable;
 use sprung::{Error, Result};
 use std::path::{Path, PathBuf};
 

@@ -3,8 +3,9 @@
 use crate::editor::controls::Controls;
 use crate::editor::controls::gestures::load;
 use crate::state::State;
+use sprung::internals::editor::with_ending;
 use sprung::params::Param;
-use sprung::preset::{KitPreset, Playable, Preset, with_ending};
+use sprung::preset::{KitPreset, Playable, Preset};
 use sprung::sound::Pad;
 use sprung::units::note_name;
 

@@ -9,8 +9,8 @@ use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::list;
 use crate::editor::widgets::text::{line, name_field, paragraph};
 use egui::{Align2, Id, Rect, Role, Sense, TextEdit, Ui, WidgetInfo, vec2};
+use sprung::internals::library::Listed;
 use sprung::preset::Playable;
-use sprung::preset::catalogue::Listed;
 use std::sync::Arc;
 
 /// Height of a row, and width of the picture in it.

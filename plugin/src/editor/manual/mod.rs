@@ -6,7 +6,7 @@ use crate::editor::theme::{GAP, PADDING, Palette, RADIUS, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align2, Color32, FontId, Label, Rect, RichText, ScrollArea, Sense, Stroke, Ui, UiBuilder, pos2, vec2};
-use sprung::manual::PAGES;
+use sprung::internals::text::PAGES;
 use text::{Block, Style, blocks, pieces};
 
 /// Width of the list of pages.

@@ -112,7 +112,7 @@ pub(super) fn pieces(text: &str) -> Vec<(Style, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sprung::manual::PAGES;
+    use sprung::internals::text::PAGES;
 
     #[test]
     fn every_page_becomes_blocks_without_marks() {

@@ -145,7 +145,7 @@ impl Pages {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sprung::manual::PAGES;
+    use sprung::internals::text::PAGES;
 
     #[test]
     fn every_page_has_a_page_of_the_manual() {

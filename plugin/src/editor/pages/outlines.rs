@@ -3,7 +3,7 @@
 //! Time and whatever else runs to the right does so from 0 to 1; values are from −1 to 1, or from 0 to 1.
 
 use egui::{Vec2, vec2};
-use sprung::engine::curves;
+use sprung::internals::curves;
 use sprung::params::{Choice as _, MalletPulse, NoiseDecay, PARAMS, Param, ParamInfo, Rattle, Shape, Soundbox, Valve};
 use sprung::sound::contact_time;
 use sprung::units::{db_from_gain, ratio_from_semitones, semitones_from_ratio};

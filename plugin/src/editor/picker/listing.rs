@@ -2,7 +2,7 @@
 
 use crate::editor::background::{Background, Progress};
 use crate::editor::drops::has_ending;
-use sprung::text::printable;
+use sprung::internals::text::printable;
 use sprung::{Error, Result};
 use std::fs;
 use std::path::PathBuf;

@@ -15,8 +15,8 @@ use super::widgets::text::{is_entered, line, name_field, take_over};
 use crate::editor::background::Background;
 use egui::{Align2, Id, Rect, Role, ScrollArea, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 use listing::{Entry, Listing};
-use sprung::preset::library::{Library, export};
-use sprung::text::file_stem;
+use sprung::internals::library::{Library, export};
+use sprung::internals::text::file_stem;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

@@ -6,9 +6,9 @@ use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
 use egui::{Event, Key, Modifiers, PointerButton, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
+use sprung::internals::library::Library;
 use sprung::params::Param;
 use sprung::preset::Playable;
-use sprung::preset::library::Library;
 use sprung_picture::Origin;
 
 impl Stage {

@@ -8,8 +8,8 @@ use crate::link::Touch;
 use crate::state::State;
 use egui::{Event, Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use sprung::internals::library::Library;
 use sprung::params::Param;
-use sprung::preset::library::Library;
 use sprung::preset::{KitPreset, Playable};
 use sprung::sound::Pad;
 

@@ -6,10 +6,10 @@ use crate::editor::theme::{SIZE, Theme};
 use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use sprung::engine::EventKind;
+use sprung::internals::learned::{Controllers, Movement, Takeover};
+use sprung::internals::library::Library;
 use sprung::params::Param;
-use sprung::params::learned::{Controllers, Movement, Takeover};
 use sprung::patch::routes::{Routes, Source, amount_param};
-use sprung::preset::library::Library;
 
 impl Band {
     fn learn(&mut self, name: &str) {

@@ -128,7 +128,7 @@ fn every_page_of_the_manual_can_be_shown() {
         stage.harness.get_by_role_and_label(Role::Tab, "?").click();
         stage.harness.run_steps(3);
         // A letter that no font has would panic here.
-        for (name, _) in sprung::manual::PAGES {
+        for (name, _) in sprung::internals::text::PAGES {
             stage.harness.get_by_label(&format!("Manual: {name}")).click();
             stage.harness.run_steps(2);
             let labels = stage.harness.query_all_by_role(Role::Label);

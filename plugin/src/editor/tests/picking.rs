@@ -6,8 +6,8 @@ use super::reaching::page;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
+use sprung::internals::library::Library;
 use sprung::preset::Playable;
-use sprung::preset::library::Library;
 use std::path::Path;
 use std::time::{Duration, Instant};
 

@@ -6,7 +6,8 @@ use crate::link::Touch;
 use egui::{Event, Modifiers, PointerButton, Pos2, Rect, vec2};
 use egui_kittest::kittest::Queryable as _;
 use rtrb::Consumer;
-use sprung::engine::{Event as Played, EventKind, Snapshot, Synth, TelemetryWriter};
+use sprung::engine::{Event as Played, EventKind, Snapshot, Synth};
+use sprung::internals::display::TelemetryWriter;
 use sprung::params::Param;
 use std::time::Duration;
 

@@ -39,7 +39,7 @@ use meter::Meter;
 use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
 use reach::Reach;
-use sprung::preset::library::Library;
+use sprung::internals::library::Library;
 use status::{Load, StatusLine};
 use std::collections::BTreeSet;
 use std::hash::{BuildHasher as _, RandomState};

@@ -4,8 +4,8 @@ use crate::editor::controls::{Hint, Said};
 use crate::editor::theme::{Palette, SMALL};
 use crate::editor::widgets::text::{SHRINK, line, width};
 use egui::{Align2, Id, Popup, PopupAnchor, Rect, RectAlign, Role, Sense, Tooltip, Ui, WidgetInfo, pos2};
-use sprung::engine::Telemetry;
-use sprung::text::counted;
+use sprung::internals::display::Telemetry;
+use sprung::internals::text::counted;
 use std::time::Duration;
 
 /// How often the load is computed, in seconds.
@@ -170,7 +170,7 @@ fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, said: &Said, right: &str, pal
 mod tests {
     use super::*;
     use crate::editor::theme::Theme;
-    use sprung::engine::TelemetryWriter;
+    use sprung::internals::display::TelemetryWriter;
     use std::sync::Arc;
 
     #[test]

@@ -183,7 +183,7 @@ impl Audio {
     pub(crate) fn feed_noise(&mut self) {
         for (channel, seed) in self.inputs.iter_mut().zip(1_u64..) {
             for (sample, n) in channel.iter_mut().zip(0..) {
-                *sample = sprung::dsp::random::uniform(seed, n);
+                *sample = sprung::internals::random::uniform(seed, n);
             }
         }
     }

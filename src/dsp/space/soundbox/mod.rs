@@ -31,7 +31,7 @@ const FAINTEST_INPUT: f32 = 1e-15;
 /// bit for bit, on the block size, and it is finite for finite input.
 ///
 /// ```
-/// use sprung::dsp::space::{BoxBody, Soundbox};
+/// use sprung::internals::space::{BoxBody, Soundbox};
 ///
 /// let mut guitar = Soundbox::new(48_000.0);
 /// guitar.set_body(BoxBody::guitar());

@@ -3,7 +3,7 @@
 use super::measured::Measured;
 use super::peers::Peer;
 use super::songs::Song;
-use sprung::dsp::Level;
+use sprung::internals::Level;
 use std::fmt::Write as _;
 
 const WORKS: [&str; 3] = ["ringing", "modulated", "driven"];

@@ -1,7 +1,7 @@
 //! Compares the digests that a CPU has computed with the accepted ones.
 
 use crate::sha256;
-use sprung::analysis::digest::Digest;
+use sprung::internals::measures::Digest;
 use std::collections::BTreeMap;
 use std::path::Path;
 

@@ -7,7 +7,7 @@ mod target;
 use crate::shell::root;
 use crate::wine;
 use cases::{Accepted, Asked, Outcome};
-use sprung::dsp::Level;
+use sprung::internals::Level;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};

@@ -3,7 +3,7 @@
 use super::midi;
 use super::page::{Page, installed, until};
 use serde_json::{Value, json};
-use sprung::analysis::digest::Digest;
+use sprung::internals::measures::Digest;
 use sprung::io::Song;
 use sprung::preset::Preset;
 use sprung::render::{Job, Options, Tail};
