@@ -10,6 +10,11 @@ pub mod random {
     pub use crate::dsp::random::*;
 }
 
+/// What moves the masses.
+pub mod exciter {
+    pub use crate::dsp::exciter::*;
+}
+
 /// The effects behind the voices, which parameters set, and the limiter.
 pub mod space {
     pub use crate::dsp::limiter::Limiter;
@@ -38,9 +43,9 @@ pub mod editor {
     pub use crate::preset::about::with_ending;
     pub use crate::preset::body::*;
     pub use crate::preset::pair::*;
-    pub use crate::sound::bodies::FIELDS;
+    pub use crate::sound::bodies::fields::{FIELDS, Field};
     pub use crate::sound::kit::{CHOKE_GROUPS, GAINS_DB};
-    pub use crate::sound::pairs::LINK_FIELDS;
+    pub use crate::sound::pairs::fields::{LINK_FIELDS, LinkField};
 }
 
 /// Two bodies as one set of modes.
@@ -103,9 +108,6 @@ pub mod measures {
     pub mod level {
         pub use crate::analysis::level::*;
     }
-    pub mod log_mel {
-        pub use crate::analysis::log_mel::*;
-    }
     pub mod spectrum {
         pub use crate::analysis::spectrum::*;
     }
@@ -125,4 +127,11 @@ pub mod realtime {
     pub use crate::realtime::fade::Fade;
     pub use crate::realtime::player::MAX_BLOCK;
     pub use crate::realtime::recorder::*;
+
+    pub mod device {
+        pub use crate::realtime::device::{Output, list, outputs, silence_library};
+    }
+    pub mod midi_ports {
+        pub use crate::realtime::midi_ports::*;
+    }
 }

@@ -10,10 +10,7 @@
 //! | [`sound`] | kits, bodies, and the tuning of the keys, also by Scala's files |
 //! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
 //! | [`io`] | songs, MIDI files, and files that are written whole or not at all; WAV files out (feature `render`), sound files in (feature `fit`) |
-//! | [`manual`] | the pages of the manual |
 //! | `render` | the offline renderer (feature `render`) |
-//! | `request` | what to render and how, under the option names that the command, batches and Python share (feature
-//! `batch`) |
 //! | `batch` | thousands of sounds from a file of jobs, with exact labels (feature `batch`) |
 //! | `analysis` | what sound is measured with: the modes of a recorded strike, differences, spectra (feature `fit`), and figures of them (feature `analysis`) |
 //! | `lab` | methods that integrate a mass on a spring, compared with the exact motion and with the oscillator (feature

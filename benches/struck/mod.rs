@@ -1,8 +1,9 @@
 //! Struck banks at work, which the benches time and whose instructions `cargo xtask callgrind` counts.
 
-use sprung::dsp::exciter::{BurstSetup, Drive, Exciter, Stroke};
+use sprung::dsp::Drive;
 use sprung::dsp::{ExcitationGains, ExcitationRows, MAX_MODES, ModeBank, ModeSetup};
 use sprung::internals::CONTROL_FRAMES;
+use sprung::internals::exciter::{BurstSetup, Exciter, Stroke};
 
 /// The kinds of work of a bank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -18,17 +18,17 @@ pub struct Digest {
     /// Length.
     pub frames: usize,
     /// Hz.
-    pub sample_rate: f64,
+    pub(crate) sample_rate: f64,
     /// SHA-256, in hexadecimal, over the little-endian bits of the interleaved `f32` samples.
     pub sha256: String,
     /// Largest magnitude of each channel in dBFS.
-    pub peak_db: [f64; 2],
+    pub(crate) peak_db: [f64; 2],
     /// RMS of each channel in dBFS.
-    pub rms_db: [f64; 2],
+    pub(crate) rms_db: [f64; 2],
     /// Mean of each channel.
-    pub dc: [f64; 2],
+    pub(crate) dc: [f64; 2],
     /// Levels of the octaves from 62.5 Hz to 8 kHz in dBFS, mean power of both channels.
-    pub bands_db: [f64; 8],
+    pub(crate) bands_db: [f64; 8],
     /// The first eight digits of the SHA-256 of each 4,096 frames.
     pub chunks: Vec<String>,
 }

@@ -13,7 +13,7 @@ pub mod figure;
 pub mod fit;
 pub(crate) mod level;
 pub(crate) mod line;
-pub(crate) mod log_mel;
+pub mod log_mel;
 #[cfg(feature = "analysis")]
 pub(crate) mod measures;
 pub mod modes;

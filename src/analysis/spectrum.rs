@@ -23,7 +23,7 @@ pub struct Peak {
     /// Hz, interpolated by the parabola through the levels of three bins.
     pub frequency: f64,
     /// dB, at the vertex of that parabola.
-    pub level: f64,
+    pub(crate) level: f64,
 }
 
 /// Spectra of overlapping stretches.

@@ -9,13 +9,12 @@ use sprung::internals::files::{Inputs, Output, Target};
 use sprung::internals::learned::Controllers;
 use sprung::internals::library::Library;
 use sprung::internals::realtime::Recording;
+use sprung::internals::realtime::{device, midi_ports};
 use sprung::internals::request::Sounds;
 use sprung::internals::text::printable;
 use sprung::params::Param;
 use sprung::preset::Playable;
-use sprung::realtime::{
-    Choice, Found, KitSender, LiveInputs, LiveSender, MidiIn, Player, Session, Setup, Status, device, midi_ports,
-};
+use sprung::realtime::{Choice, Found, KitSender, LiveInputs, LiveSender, MidiIn, Player, Session, Setup, Status};
 use sprung::render::BLOCKS;
 use sprung::{Error, Result};
 use std::io::IsTerminal;

@@ -3,7 +3,7 @@
 use super::EventKind;
 
 /// Numbers of the controllers that the engine responds to.
-pub mod controller {
+pub(crate) mod controller {
     /// Modulation wheel.
     pub(crate) const WHEEL: u8 = 1;
     /// Breath.
@@ -37,7 +37,7 @@ pub mod controller {
     /// The key that the next note glides from.
     pub(crate) const PORTAMENTO_CONTROL: u8 = 84;
     /// How much of a channel is sent to the space that a song's channels share.
-    pub const REVERB_SEND: u8 = 91;
+    pub(crate) const REVERB_SEND: u8 = 91;
     /// Raises the selected registered parameter by a step.
     pub(crate) const INCREMENT: u8 = 96;
     /// Lowers it by a step.

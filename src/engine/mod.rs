@@ -54,7 +54,8 @@ pub(crate) use ensemble::Stems;
 pub use event::{Event, EventKind, Expression};
 #[cfg(feature = "fit")]
 pub(crate) use modulation::Lfo;
-pub use note::{EndedNote, Note, NoteId, Notes};
+pub(crate) use note::Note;
+pub use note::{EndedNote, NoteId, Notes};
 pub use snapshot::{Mass, Snapshot, SoundingNote};
 pub(crate) use synth::PadGroup;
 pub use synth::{Outputs, SAMPLE_RATES, Synth};

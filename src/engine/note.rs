@@ -23,43 +23,43 @@ impl NoteId {
 
 /// A note as the manager passes it to a voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Note {
+pub(crate) struct Note {
     /// MIDI channel, 0–15.
-    pub channel: u8,
+    pub(crate) channel: u8,
     /// MIDI key, 0–127.
-    pub key: u8,
+    pub(crate) key: u8,
     /// Pitch of the key in the tuning.
-    pub pitch: Pitch,
+    pub(crate) pitch: Pitch,
     /// Offset from that pitch in semitones.
-    pub detune: f32,
+    pub(crate) detune: f32,
     /// 0–1.
-    pub velocity: f32,
+    pub(crate) velocity: f32,
     /// Whether the soft pedal was down.
-    pub soft: bool,
+    pub(crate) soft: bool,
     /// Brightness of the channel, −0.5 to 0.5.
-    pub brightness: f32,
+    pub(crate) brightness: f32,
     /// The identifier that the host gave the note, if any.
-    pub id: Option<NoteId>,
+    pub(crate) id: Option<NoteId>,
     /// Number of the note among those of its synth.
-    pub serial: u64,
+    pub(crate) serial: u64,
     /// Number of the sound among those that its synth has played.
-    pub patch: u32,
+    pub(crate) patch: u32,
     /// Number of the body among those of its synth. Notes with different bodies never share a voice.
-    pub body: u32,
+    pub(crate) body: u32,
     /// Choke group, 0 for none.
-    pub choke: u8,
+    pub(crate) choke: u8,
     /// The output beside the main one that it goes to where there are several; 0 for the main one.
-    pub output: u8,
+    pub(crate) output: u8,
     /// Amplitude ratio of the pad.
-    pub gain: f32,
+    pub(crate) gain: f32,
     /// Pan of the pad, −1 (left) to 1 (right).
-    pub pan: f32,
+    pub(crate) pan: f32,
     /// Whether another key was down when the note began.
-    pub is_legato: bool,
+    pub(crate) is_legato: bool,
     /// The glide that the channel's portamento gives it, in place of the patch's.
     pub(crate) glide: Option<NoteGlide>,
     /// The hit of another body, if the note is one ([`EventKind::Strike`](super::EventKind::Strike)).
-    pub contact: Option<Contact>,
+    pub(crate) contact: Option<Contact>,
 }
 
 impl Note {
@@ -93,9 +93,9 @@ pub struct EndedNote {
     pub channel: u8,
     /// MIDI key, 0–127.
     pub key: u8,
-    /// As [`Note::id`].
+    /// The identifier that the host gave the note, if any.
     pub id: Option<NoteId>,
-    /// As [`Note::serial`].
+    /// Number of the note among those of its synth.
     pub serial: u64,
 }
 

@@ -20,10 +20,8 @@ use midly::{Format, Header};
 use reader::TrackReader;
 use std::io::Read;
 
-pub use limits::MAX_EVENTS;
-
 /// Maximum size of a MIDI file in bytes.
-pub const MAX_FILE_SIZE: u64 = 64 << 20;
+pub(crate) const MAX_FILE_SIZE: u64 = 64 << 20;
 
 /// How a MIDI file is read.
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,7 +65,7 @@ impl Song {
     /// Reads a MIDI file to its end. `origin` names it in errors.
     ///
     /// # Errors
-    /// [`Error::Io`] if reading fails; [`Error::Format`] if the file is larger than [`MAX_FILE_SIZE`], or as
+    /// [`Error::Io`] if reading fails; [`Error::Format`] if the file is larger than 64 MiB, or as
     /// [`Song::parse`].
     pub fn read(reader: impl Read, origin: &str) -> crate::Result<Self> {
         Ok(MidiFile::read(reader, origin, Reading::default())?.song)

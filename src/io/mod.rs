@@ -8,7 +8,7 @@ pub(crate) mod flac;
 pub(crate) mod inputs;
 #[cfg(feature = "batch")]
 mod journal;
-pub mod midi;
+pub(crate) mod midi;
 pub(crate) mod output;
 mod quantise;
 #[cfg(feature = "render")]
@@ -39,7 +39,7 @@ pub(crate) use midi::{MidiFile, Reading};
 pub(crate) use output::Output;
 pub(crate) use quantise::quantise;
 #[cfg(feature = "render")]
-pub use sampler_chunk::Loop;
+pub(crate) use sampler_chunk::Loop;
 #[cfg(feature = "render")]
 pub(crate) use sampler_chunk::MIDDLE_C;
 pub use song::{Song, SongEvent};

@@ -2,16 +2,16 @@
 
 /// A loop of a sound, in frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Loop {
+pub(crate) struct Loop {
     /// The first frame.
-    pub start: u64,
+    pub(crate) start: u64,
     /// The frame after the last one.
-    pub end: u64,
+    pub(crate) end: u64,
 }
 
 impl Loop {
     /// A whole sound of this many frames.
-    pub fn whole(frames: u64) -> Self {
+    pub(crate) fn whole(frames: u64) -> Self {
         Self { start: 0, end: frames }
     }
 }

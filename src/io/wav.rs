@@ -38,7 +38,7 @@ impl<W: Write + Seek> WavWriter<W> {
     ///
     /// # Errors
     /// As [`WavWriter::new`].
-    pub fn looped(
+    pub(crate) fn looped(
         out: W,
         name: &str,
         format: WavFormat,

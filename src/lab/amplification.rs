@@ -16,7 +16,7 @@ pub(crate) struct Amplification {
 
 /// The tone that follows from a step's eigenvalues.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Tone {
+pub(crate) enum Tone {
     /// A pair of eigenvalues `e^(−decay ± i angle)`: decay in nepers per step (negative: growth), angle in rad per
     /// step.
     Rings {

@@ -2,9 +2,9 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`system`], [`energy`] | the mass, spring, damper and force; energy and Lagrangian |
-//! | [`closed_form`], [`mod@reference`] | the exact motion; a fine integration for springs without a closed form |
-//! | [`method`], [`amplification`] | the methods, one file each; the matrix of one step |
+//! | [`System`], `energy` | the mass, spring, damper and force; energy and Lagrangian |
+//! | [`ClosedForm`], [`mod@reference`] | the exact motion; a fine integration for springs without a closed form |
+//! | [`Method`], `amplification` | the methods, one file each; the matrix of one step |
 //! | [`trajectory`] | a method run over a period of time, and its error |
 //! | [`comparison`], [`convergence`], [`stability`], [`pitch`], [`sound`] | measured behaviour: errors, orders, limits, tuning, audio |
 //! | [`figure`], [`animation`], [`report`] | figures, animations and an HTML page |
@@ -37,7 +37,6 @@ pub mod stability;
 pub(crate) mod system;
 pub mod trajectory;
 
-pub use amplification::Tone;
 pub use closed_form::ClosedForm;
-pub use method::{Integrator, Method, Order};
+pub use method::{Method, Order};
 pub use system::{Force, Spring, State, System};

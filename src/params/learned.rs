@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU8, AtomicU16};
 pub type Controllers = BTreeMap<u8, Param>;
 
 /// Binds a controller to a parameter, in place of what either was bound to; without a controller, the parameter has none.
-pub fn bind(controllers: &mut Controllers, param: Param, controller: Option<u8>) {
+pub(crate) fn bind(controllers: &mut Controllers, param: Param, controller: Option<u8>) {
     controllers.retain(|_, bound| *bound != param);
     if let Some(controller) = controller {
         controllers.insert(controller, param);

@@ -96,7 +96,7 @@ impl Source {
     }
 
     /// Whether it changes with time alone: an oscillator or an envelope.
-    pub const fn is_moving(self) -> bool {
+    pub(crate) const fn is_moving(self) -> bool {
         use Source::{Envelope1, Envelope2, Lfo1, Lfo2, Lfo3};
         matches!(self, Lfo1 | Lfo2 | Lfo3 | Envelope1 | Envelope2)
     }
@@ -215,7 +215,7 @@ pub fn macro_param(number: usize) -> Option<Param> {
 }
 
 /// The place of the route whose amount this parameter is; none if the parameter is not the amount of a route.
-pub fn place_of_amount(param: Param) -> Option<usize> {
+pub(crate) fn place_of_amount(param: Param) -> Option<usize> {
     (param as usize).checked_sub(Param::Route1 as usize).filter(|place| *place < MAX_ROUTES)
 }
 

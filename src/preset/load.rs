@@ -41,7 +41,7 @@ impl Preset {
     /// Reads the preset file at `path`.
     ///
     /// # Errors
-    /// [`Error::Io`] if it cannot be read, [`Error::Format`] if it is larger than [`MAX_FILE_SIZE`], not UTF-8, or
+    /// [`Error::Io`] if it cannot be read, [`Error::Format`] if it is larger than 16 MiB, not UTF-8, or
     /// as [`Preset::parse`] says.
     pub fn load(path: &Path) -> Result<Self> {
         let origin = path.display().to_string();

@@ -17,7 +17,7 @@ const SCAN: Duration = Duration::from_secs(1);
 const END: Duration = Duration::from_secs(2);
 
 /// A MIDI input port in the JACK graph. `JackMidi::poll` must be called regularly.
-pub struct JackMidi {
+pub(crate) struct JackMidi {
     wanted: Option<Wanted>,
     client: Option<AsyncClient<Notifications, Process>>,
     /// Kept here while there is no client.

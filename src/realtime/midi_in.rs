@@ -5,7 +5,9 @@ use super::live::LiveSender;
 use super::midi_ports::{MidiPorts, Wanted};
 
 /// The source of live MIDI input.
-pub enum MidiIn {
+pub struct MidiIn(Kind);
+
+enum Kind {
     /// No input.
     None(Box<LiveSender>),
     /// The system's ports.
@@ -23,28 +25,28 @@ impl MidiIn {
             "all" => Some(Wanted::All),
             name => Some(Wanted::Named(name.to_owned())),
         };
-        match wanted {
-            wanted if jack => Self::Jack(Box::new(JackMidi::new(wanted, sender))),
-            Some(wanted) => Self::Ports(MidiPorts::new(wanted, sender)),
-            None => Self::None(Box::new(sender)),
-        }
+        Self(match wanted {
+            wanted if jack => Kind::Jack(Box::new(JackMidi::new(wanted, sender))),
+            Some(wanted) => Kind::Ports(MidiPorts::new(wanted, sender)),
+            None => Kind::None(Box::new(sender)),
+        })
     }
 
     /// Ends the input and returns the sender for use by another input; none if the system does not release it.
     pub fn into_sender(self) -> Option<LiveSender> {
-        match self {
-            Self::None(sender) => Some(*sender),
-            Self::Ports(ports) => ports.into_sender(),
-            Self::Jack(port) => port.into_sender(),
+        match self.0 {
+            Kind::None(sender) => Some(*sender),
+            Kind::Ports(ports) => ports.into_sender(),
+            Kind::Jack(port) => port.into_sender(),
         }
     }
 
     /// Checks for ports that have appeared or disappeared, and returns messages about them. Must be called regularly.
     pub fn poll(&mut self) -> Vec<String> {
-        match self {
-            Self::None(_) => vec![],
-            Self::Ports(ports) => ports.poll(),
-            Self::Jack(port) => port.poll(),
+        match &mut self.0 {
+            Kind::None(_) => vec![],
+            Kind::Ports(ports) => ports.poll(),
+            Kind::Jack(port) => port.poll(),
         }
     }
 }

@@ -14,7 +14,7 @@ const CLIENT: &str = "sprung";
 
 /// The MIDI ports to listen to.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Wanted {
+pub(crate) enum Wanted {
     /// All ports.
     All,
     /// Ports whose name contains this text.
@@ -37,7 +37,7 @@ struct Connected {
 }
 
 /// Connections to MIDI ports. `MidiPorts::poll` must be called regularly.
-pub struct MidiPorts {
+pub(crate) struct MidiPorts {
     wanted: Wanted,
     /// Shared by the ports' threads, none of which is the audio thread.
     sender: Arc<Mutex<LiveSender>>,

@@ -9,12 +9,12 @@
 
 pub(crate) mod block_clock;
 pub(crate) mod convert;
-pub mod device;
+pub(crate) mod device;
 pub(crate) mod fade;
 mod jack_midi;
 pub(crate) mod live;
 mod midi_in;
-pub mod midi_ports;
+pub(crate) mod midi_ports;
 pub(crate) mod player;
 pub(crate) mod recorder;
 pub(crate) mod session;
@@ -27,7 +27,6 @@ pub use device::{Choice, Found};
 pub use live::{LiveEvent, LiveInputs, LiveSender};
 pub use midi_in::MidiIn;
 pub use player::{KitSender, Player, Setup};
-pub use recorder::{Recorded, Recording, Tap};
 pub use session::Session;
 pub use status::Status;
 pub use stream::Source;

@@ -21,10 +21,10 @@ struct Looped<'a> {
 /// Frames of the pieces in which the limiter plays the first round, so that no second copy of the whole is needed.
 const FIRST_ROUND_FRAMES: usize = 4096;
 
-/// As [`to_wav`](super::to_wav), but as a loop of the song's length, with loop points for samplers.
+/// As [`to_wav`](super::wav::to_wav), but as a loop of the song's length, with loop points for samplers.
 ///
 /// # Errors
-/// As [`to_wav`](super::to_wav), and [`Error::Value`] for a song without length or a job without a tail, whose end cannot join its
+/// As [`to_wav`](super::wav::to_wav), and [`Error::Value`] for a song without length or a job without a tail, whose end cannot join its
 /// beginning.
 pub fn to_looped_wav(
     job: &Job,

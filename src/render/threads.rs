@@ -8,7 +8,7 @@ pub const THREADS: RangeInclusive<u16> = 1..=256;
 
 /// Runs `work` on a pool of this many threads, which end afterwards. The default is one thread per core, or the number
 /// in the environment variable `RAYON_NUM_THREADS`. Use it for [`Job::render`](super::Job::render) and
-/// [`to_wav`](super::to_wav).
+/// [`to_wav`](super::wav::to_wav).
 ///
 /// # Errors
 /// [`Error::Value`] if the number is not within [`THREADS`], or if the system cannot create so many threads.

@@ -8,13 +8,13 @@ use crate::render::SAMPLE_RATES;
 #[derive(Clone, Copy)]
 pub struct Number {
     /// Parses a number, with or without its unit.
-    pub parse: fn(&str) -> Result<f64, String>,
+    pub(crate) parse: fn(&str) -> Result<f64, String>,
     /// Smallest value.
-    pub min: f64,
+    pub(crate) min: f64,
     /// Largest value.
-    pub max: f64,
+    pub(crate) max: f64,
     /// Whether only whole numbers are accepted.
-    pub is_whole: bool,
+    pub(crate) is_whole: bool,
 }
 
 /// An option of a [`Request`].
@@ -23,7 +23,7 @@ pub struct Name {
     pub name: &'static str,
     set: fn(&mut Request, &str) -> Result<(), String>,
     /// The numbers that it accepts; none if it takes no number.
-    pub number: Option<Number>,
+    pub(crate) number: Option<Number>,
 }
 
 impl Name {

@@ -78,9 +78,9 @@ impl Default for Request {
 #[derive(Clone, Debug)]
 pub struct Prepared {
     /// The song, or the notes as one.
-    pub song: Song,
+    pub(crate) song: Song,
     /// The sounds.
-    pub sounds: Sounds,
+    pub(crate) sounds: Sounds,
     input: Vec<f32>,
     /// Where the rendering begins, in seconds.
     from: f64,

@@ -31,6 +31,13 @@ const ALLOWED: &[Row] = &[
     ("figure", &["error", "text"]),
     ("analysis", &["dsp", "engine", "error", "figure", "io", "params", "patch", "preset", "sound", "text", "units"]),
     ("lab", &["dsp", "error", "figure", "text"]),
+    (
+        "internals",
+        &[
+            "analysis", "dsp", "engine", "error", "figure", "io", "manual", "params", "preset", "realtime", "render",
+            "request", "sound", "text",
+        ],
+    ),
 ];
 
 /// Crates, and parts of the standard library, that only the listed modules may use.

@@ -3,11 +3,13 @@
 use crate::events::{off, on};
 use crate::in_blocks::in_blocks;
 use crate::workers::Backwards;
-use sprung::engine::midi::controller::REVERB_SEND;
 use sprung::engine::{Ensemble, Event, EventKind};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::sound::Mix;
+
+/// The MIDI controller that sends a channel to the shared space.
+const REVERB_SEND: u8 = 91;
 
 const RATE: f64 = 48_000.0;
 

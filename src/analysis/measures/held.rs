@@ -62,7 +62,7 @@ fn partials(sound: &[f32], pitch: f64) -> Option<Vec<(usize, f64, f64)>> {
 }
 
 /// How deep the valleys between the partials are, in dB: the median over the partials. None for a sound that is too short.
-pub fn valleys(sound: &[f32], pitch: f64) -> Option<f64> {
+pub(crate) fn valleys(sound: &[f32], pitch: f64) -> Option<f64> {
     median(
         partials(sound, pitch)?.into_iter().map(|(_, energy, between)| decibels(energy / between.max(1e-30))).collect(),
     )
@@ -89,7 +89,7 @@ fn levels(sound: &[f32], pitch: f64, number: usize, periods: f64, rate: f64) -> 
 
 /// Over which time the partials enter, in ms: from the tenth to the ninetieth percentile of the times at which each has half of the
 /// level that it has from 0.3 to 0.6 s. None for a sound of fewer than three partials.
-pub fn entry(sound: &[f32], pitch: f64) -> Option<f64> {
+pub(crate) fn entry(sound: &[f32], pitch: f64) -> Option<f64> {
     // A window is centred on its time: half of the first lies before the sound.
     let before = (0.5 * PERIODS / pitch * f64::from(RATE)) as usize;
     let start = [&vec![0.0; before][..], part(sound, [0.0, 0.6])?].concat();
@@ -111,7 +111,7 @@ pub fn entry(sound: &[f32], pitch: f64) -> Option<f64> {
 
 /// The share of the wobble of the partials' levels that is at one rate from 1 to 15 Hz, as a mean over the partials that wobble. None if
 /// none does.
-pub fn regularity(sound: &[f32], pitch: f64) -> Option<f64> {
+pub(crate) fn regularity(sound: &[f32], pitch: f64) -> Option<f64> {
     let steady = part(sound, [0.5, 3.5]).or(part(sound, [0.5, 2.4]))?;
     let shares: Vec<f64> = partials(sound, pitch)?
         .into_iter()
@@ -152,7 +152,7 @@ fn from_line(numbers: &[f64]) -> Option<Vec<f32>> {
 }
 
 /// How many octaves the centre of the spectrum moves from 0.2–0.5 s to 2.0–2.4 s. None if it is silent by then.
-pub fn colour(sound: &[f32]) -> Option<f64> {
+pub(crate) fn colour(sound: &[f32]) -> Option<f64> {
     let centre = |times| {
         let part = part(sound, times)?;
         let length = part.len().next_power_of_two();

@@ -14,7 +14,7 @@ const ORDER: f64 = 6.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Octave {
     /// Energy over that of the whole sound in dB.
-    pub level: f64,
+    pub(crate) level: f64,
     /// T60 in seconds, from −5 to −25 dB of the remaining energy (Schroeder 1965); none if it does not fall so far.
     pub t60: Option<f64>,
 }

@@ -9,13 +9,13 @@ use toml::{Table, Value};
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// The instrument, with its source.
-    pub name: String,
+    pub(crate) name: String,
     /// Presets that are meant to be this instrument.
-    pub presets: Vec<String>,
+    pub(crate) presets: Vec<String>,
     /// [`super::high_share`] in dB.
-    pub high_share: RangeInclusive<f64>,
+    pub(crate) high_share: RangeInclusive<f64>,
     /// T60 in seconds of each octave; none for octaves without sound.
-    pub t60: [Option<RangeInclusive<f64>>; CENTRES.len()],
+    pub(crate) t60: [Option<RangeInclusive<f64>>; CENTRES.len()],
 }
 
 /// The values of all instruments.

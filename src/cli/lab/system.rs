@@ -104,7 +104,7 @@ impl MethodArgs {
         if self.is_all() {
             methods.retain(|method| {
                 // A step that is invalid for every method is reported later, as an error.
-                let refused = steps.iter().filter(|h| **h > 0.0).find_map(|h| method.integrator(system, *h).err());
+                let refused = steps.iter().filter(|h| **h > 0.0).find_map(|h| method.check(system, *h).err());
                 if let Some(error) = &refused {
                     complain("note", format!("without {}: {error}", method.key()));
                 }

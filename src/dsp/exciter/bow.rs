@@ -19,13 +19,13 @@ const STICKING: f32 = 1.999;
 #[derive(Clone, Copy, Debug)]
 pub struct Bow {
     /// Speed at the start of the ramp, in amplitudes of the modes, and its change per frame.
-    pub speed: [f32; 2],
+    pub(crate) speed: [f32; 2],
     /// Maximum friction in a frame, and its change per frame.
-    pub force: [f32; 2],
+    pub(crate) force: [f32; 2],
     /// Frames of the ramp that have passed.
-    pub passed: u32,
+    pub(crate) passed: u32,
     /// Slip at which friction is half way between its values without slip and at high slip, as a fraction of the speed.
-    pub width: f32,
+    pub(crate) width: f32,
 }
 
 impl Bow {

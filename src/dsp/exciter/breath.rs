@@ -14,22 +14,22 @@ const EDDIES: f64 = 400.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Breath {
     /// Pressure in the mouth, `γ`, at the start of the ramp, and its change per frame.
-    pub pressure: [f32; 2],
+    pub(crate) pressure: [f32; 2],
     /// Frames of the ramp that have passed.
-    pub passed: u32,
+    pub(crate) passed: u32,
     /// Turbulence: the deviation by chance of the pressure behind the flow, as a share of it.
-    pub noise: f32,
+    pub(crate) noise: f32,
     /// Flow at a difference of 1 through the valve at rest, `β`.
-    pub opening: f32,
+    pub(crate) opening: f32,
     /// The note's frequency over the sample rate, `q`.
-    pub per_frame: f32,
+    pub(crate) per_frame: f32,
     /// The sum of the modes' shares of the flow, `S`.
-    pub shares: f32,
+    pub(crate) shares: f32,
 }
 
 impl Breath {
     /// No breath, and no tube.
-    pub const NONE: Self =
+    pub(crate) const NONE: Self =
         Self { pressure: [0.0; 2], passed: 0, noise: 0.0, opening: 0.0, per_frame: 0.0, shares: 0.0 };
 }
 
@@ -60,9 +60,9 @@ enum Part {
 #[derive(Clone, Copy, Debug)]
 pub struct Mouthpiece {
     /// The breath that it meets in the next frames.
-    pub breath: Breath,
+    pub(crate) breath: Breath,
     /// The stream of the turbulence.
-    pub key: u64,
+    pub(crate) key: u64,
     drawn: u64,
     /// The turbulence now, how far it follows the random numbers in a frame, and the factor that makes its variance 1.
     eddy: f32,
@@ -74,7 +74,7 @@ pub struct Mouthpiece {
 
 impl Mouthpiece {
     /// At rest, without breath.
-    pub const REST: Self = Self {
+    pub(crate) const REST: Self = Self {
         breath: Breath::NONE,
         key: 0,
         drawn: 0,
@@ -86,7 +86,7 @@ impl Mouthpiece {
     };
 
     /// Gives the mouthpiece a law. One of the same kind goes on from where it is.
-    pub fn set(&mut self, law: MouthpieceLaw, sample_rate: f64) {
+    pub(crate) fn set(&mut self, law: MouthpieceLaw, sample_rate: f64) {
         if Some(law) == self.law {
             return;
         }

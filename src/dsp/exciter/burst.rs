@@ -94,17 +94,17 @@ pub struct Colour {
 
 impl Colour {
     /// No filter.
-    pub const WHITE: Self = Self { colour: 0.0, follow: 1.0, mass: 0.0 };
+    pub(crate) const WHITE: Self = Self { colour: 0.0, follow: 1.0, mass: 0.0 };
 
     /// The filter of a [`BurstSetup::colour`].
-    pub fn new(colour: f64, sample_rate: f64) -> Self {
+    pub(crate) fn new(colour: f64, sample_rate: f64) -> Self {
         let share = if colour < 0.0 { 1.0 + colour } else { colour };
         let corner = LOWEST_CORNER * pow(HIGHEST_CORNER / LOWEST_CORNER, share);
         Self { colour, follow: (1.0 - exp(-TAU * corner / sample_rate)) as f32, mass: 0.0 }
     }
 
     /// The next frame of some noise.
-    pub fn filter(&mut self, noise: f32) -> f32 {
+    pub(crate) fn filter(&mut self, noise: f32) -> f32 {
         if self.colour == 0.0 {
             return noise;
         }

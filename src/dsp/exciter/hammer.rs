@@ -10,24 +10,24 @@ pub(crate) const MOST_GIVEN: f64 = 3.0;
 #[derive(Clone, Copy, Debug)]
 pub struct HammerLaw {
     /// Mass; the body's displacements and forces are in the same units.
-    pub mass: f64,
+    pub(crate) mass: f64,
     /// Its speed.
-    pub speed: f64,
+    pub(crate) speed: f64,
     /// The speed of a full strike.
-    pub full_speed: f64,
+    pub(crate) full_speed: f64,
     /// Contact time at a wall, at full speed.
-    pub contact: f64,
+    pub(crate) contact: f64,
     /// How far a force of 1 in a frame moves the body at the point of the strike until the frame's end.
-    pub compliance: f64,
+    pub(crate) compliance: f64,
     /// The same for modes that are too high to be rendered, which follow a force at once.
-    pub stillness: f64,
+    pub(crate) stillness: f64,
     /// The hammer is caught after this many frames.
-    pub longest: u32,
+    pub(crate) longest: u32,
 }
 
 impl HammerLaw {
     /// A hammer that does not move.
-    pub const NONE: Self =
+    pub(crate) const NONE: Self =
         Self { mass: 1.0, speed: 0.0, full_speed: 0.0, contact: 1.0, compliance: 0.0, stillness: 0.0, longest: 0 };
 }
 
@@ -48,7 +48,7 @@ pub struct Hammer {
 
 impl Hammer {
     /// No hammer.
-    pub const AWAY: Self = Self {
+    pub(crate) const AWAY: Self = Self {
         law: HammerLaw::NONE,
         felt: Felt::NONE,
         place: None,
@@ -60,7 +60,7 @@ impl Hammer {
     };
 
     /// A hammer that is about to touch the body. Without speed there is none.
-    pub fn new(law: HammerLaw) -> Self {
+    pub(crate) fn new(law: HammerLaw) -> Self {
         if !(law.speed > 0.0 && law.full_speed > 0.0) {
             return Self::AWAY;
         }

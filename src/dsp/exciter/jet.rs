@@ -29,7 +29,7 @@ const SHED: f32 = 2.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JetLaw {
     /// The frequency in Hz at which its wave comes to the edge a quarter of a period late. There it drives a tube best.
-    pub frequency: f64,
+    pub(crate) frequency: f64,
 }
 
 impl JetLaw {

@@ -6,13 +6,13 @@ use super::felt::Felt;
 #[derive(Clone, Copy, Debug)]
 pub struct RattleLaw {
     /// What it is.
-    pub kind: RattleKind,
+    pub(crate) kind: RattleKind,
     /// The speed of a hard hit, and its contact time.
-    pub speed: f64,
+    pub(crate) speed: f64,
     /// See `speed`.
-    pub contact: f64,
+    pub(crate) contact: f64,
     /// How far a force of 1 in a frame moves the body at the point until the frame's end.
-    pub compliance: f64,
+    pub(crate) compliance: f64,
 }
 
 /// What rattles.
@@ -52,7 +52,7 @@ pub struct Rattle {
 
 impl Rattle {
     /// A rattle on a body at rest.
-    pub fn new(law: RattleLaw) -> Self {
+    pub(crate) fn new(law: RattleLaw) -> Self {
         let (inverse_mass, pull) = match law.kind {
             RattleKind::Edge { .. } => (0.0, 0.0),
             RattleKind::Loose { mass, pull } => (1.0 / mass, pull),

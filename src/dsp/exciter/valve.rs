@@ -15,12 +15,12 @@ const FASTEST: f64 = 0.4;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValveLaw {
     /// The valve's own frequency in Hz.
-    pub frequency: f64,
+    pub(crate) frequency: f64,
     /// Its quality.
-    pub quality: f64,
+    pub(crate) quality: f64,
     /// How far a steady pressure difference of 1 moves it, as a multiple of its opening at rest: −1 for a reed, which it closes,
     /// positive for lips.
-    pub reach: f64,
+    pub(crate) reach: f64,
 }
 
 impl ValveLaw {

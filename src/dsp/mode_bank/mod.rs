@@ -108,15 +108,15 @@ pub struct ModeSetup {
 #[derive(Clone, Copy, Debug)]
 pub struct ModeRows {
     /// As [`ModeSetup::frequency`].
-    pub frequency: [f64; MAX_MODES],
+    pub(crate) frequency: [f64; MAX_MODES],
     /// As [`ModeSetup::t60`].
-    pub t60: [f64; MAX_MODES],
+    pub(crate) t60: [f64; MAX_MODES],
     /// As [`ModeSetup::left`].
-    pub left: [f32; MAX_MODES],
+    pub(crate) left: [f32; MAX_MODES],
     /// As [`ModeSetup::right`].
-    pub right: [f32; MAX_MODES],
+    pub(crate) right: [f32; MAX_MODES],
     /// Number of modes, at most [`MAX_MODES`]. Numbers beyond them are not used.
-    pub len: usize,
+    pub(crate) len: usize,
 }
 
 impl FromIterator<ModeSetup> for ModeRows {
@@ -154,15 +154,15 @@ impl ExcitationGains {
 #[derive(Clone, Copy, Debug)]
 pub struct ExcitationRows {
     /// As [`ExcitationGains::push`].
-    pub push: [f32; MAX_MODES],
+    pub(crate) push: [f32; MAX_MODES],
     /// As [`ExcitationGains::pull`].
-    pub pull: [f32; MAX_MODES],
+    pub(crate) pull: [f32; MAX_MODES],
     /// As [`ExcitationGains::noise`].
-    pub noise: [f32; MAX_MODES],
+    pub(crate) noise: [f32; MAX_MODES],
     /// As [`ExcitationGains::turn`].
-    pub turn: [[f32; MAX_MODES]; 2],
+    pub(crate) turn: [[f32; MAX_MODES]; 2],
     /// Whether the response to noise has the phases as well, because they belong to the body and not only to a pulse.
-    pub turned_noise: bool,
+    pub(crate) turned_noise: bool,
 }
 
 impl ExcitationRows {

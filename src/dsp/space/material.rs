@@ -6,11 +6,11 @@ use libm::sqrt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Young's modulus in Pa.
-    pub youngs_modulus: f64,
+    pub(crate) youngs_modulus: f64,
     /// Density in kg/m³.
-    pub density: f64,
+    pub(crate) density: f64,
     /// Poisson's ratio.
-    pub poissons_ratio: f64,
+    pub(crate) poissons_ratio: f64,
 }
 
 /// Figures: W. M. Haynes (ed.), *CRC Handbook of Chemistry and Physics*, and Fletcher and Rossing, *The Physics of

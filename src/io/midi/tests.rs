@@ -1,5 +1,6 @@
 //! Tests of the MIDI reader with files from midly's writer and with files written by hand.
 
+use super::limits::MAX_EVENTS;
 use super::*;
 use midly::{Format, Fps, Header, MetaMessage, MidiMessage, PitchBend, Smf, Timing, TrackEvent, TrackEventKind};
 use proptest::prelude::*;

@@ -6,7 +6,7 @@ mod resample;
 mod wav;
 
 pub use codecs::DECODER;
-pub use recording::{MOST_CHANNELS, Recording};
+pub use recording::Recording;
 pub use resample::resampled;
 
 use crate::error::{Error, Result};

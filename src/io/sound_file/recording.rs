@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 
 /// Most channels that a sound can have. What works on a sound takes time and memory for each of its channels, and a file of some
 /// kilobytes can claim to have 65,535 of them.
-pub const MOST_CHANNELS: usize = 64;
+pub(super) const MOST_CHANNELS: usize = 64;
 
 /// A sound in memory.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,8 +42,8 @@ impl Recording {
         Ok((0..self.frames()).map(mean).collect())
     }
 
-    /// Returns an error if the rate is not one of the engine's ([`SAMPLE_RATES`](crate::engine::synth::SAMPLE_RATES)), or if there are no channels or more than
-    /// [`MOST_CHANNELS`]. What works on a sound takes time and memory by both. `name` is the file's name in the error.
+    /// Returns an error if the rate is not one of the engine's ([`SAMPLE_RATES`](crate::engine::SAMPLE_RATES)), or if there are no channels or
+    /// more than 64. What works on a sound takes time and memory by both. `name` is the file's name in the error.
     ///
     /// # Errors
     /// [`Error::Format`] that says what would be right.

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::lab::system::State;
 
 /// Advances a state by one step of fixed length.
-pub trait Integrator {
+pub(crate) trait Integrator {
     /// The state one step after `state`, the state at time `t`. Fails only if an iteration does not converge.
     fn step(&self, state: State, t: f64) -> Result<State>;
 }

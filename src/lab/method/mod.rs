@@ -14,7 +14,7 @@ mod verlet;
 use super::system::System;
 use crate::error::{Error, Result, nearest};
 
-pub use integrator::Integrator;
+pub(crate) use integrator::Integrator;
 
 /// How fast a method's error falls as the step shrinks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,8 +150,13 @@ impl Method {
         })
     }
 
+    /// Returns an error if the method cannot integrate this system with steps of `h` seconds.
+    pub fn check(self, system: &System, h: f64) -> Result<()> {
+        self.integrator(system, h).map(drop)
+    }
+
     /// The method with steps of `h` seconds. Returns an error if it cannot integrate this system.
-    pub fn integrator(self, system: &System, h: f64) -> Result<Box<dyn Integrator>> {
+    pub(crate) fn integrator(self, system: &System, h: f64) -> Result<Box<dyn Integrator>> {
         system.validate()?;
         if !(h > 0.0 && h.is_finite()) {
             return Err(Error::value("steps", format!("a step must be longer than 0 s, got {h}")));

@@ -7,7 +7,7 @@ use super::size::Size;
 use crate::patch::MAX_MODES;
 
 /// Default frequency of a body in Hz: C4.
-pub const DEFAULT_FREQUENCY: f64 = 261.625_565_300_598_6;
+pub(crate) const DEFAULT_FREQUENCY: f64 = 261.625_565_300_598_6;
 
 /// Lowest and highest frequency of a body, in Hz.
 pub(super) const FREQUENCY_RANGE: (f64, f64) = (1.0, 20_000.0);
@@ -23,7 +23,7 @@ pub(crate) const RATIO_RANGE: (f64, f64) = (0.01, 1000.0);
 pub enum Pitch {
     /// A given frequency in Hz. For a body that follows the keys, its decays are computed at this frequency.
     Frequency(f64),
-    /// The frequency follows from size and material. Models without a size have [`DEFAULT_FREQUENCY`].
+    /// The frequency follows from size and material. Models without a size have that of middle C.
     Size(Size),
 }
 
@@ -61,7 +61,7 @@ pub struct Body {
     pub strike_share: f64,
     /// Whether keys set the pitch. If not, the body sounds at its own frequency for every key.
     pub follows_key: bool,
-    /// Maximum number of modes, 1 to [`super::MAX_MODES`]; a split pair counts as two.
+    /// Maximum number of modes, 1 to [`MAX_MODES`]; a split pair counts as two.
     pub modes: usize,
     /// Seed of all random numbers.
     pub seed: u64,

@@ -6,9 +6,6 @@ use super::model::Model;
 use super::size::Size;
 use super::timpani::Drum;
 
-/// Maximum number of modes of a body.
-pub const MAX_MODES: usize = 512;
-
 /// One number of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
@@ -154,7 +151,7 @@ mod tests {
         names.sort_unstable();
         names.dedup();
         assert_eq!(names.len(), FIELDS.len());
-        assert_eq!(MAX_MODES as f64, FIELDS.iter().find(|field| field.name == "count").unwrap().max);
+        assert_eq!(crate::patch::MAX_MODES as f64, FIELDS.iter().find(|field| field.name == "count").unwrap().max);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Tests of properties that all bodies must have.
 
 use super::body::T60_RANGE;
+use super::fields::Field;
 use super::*;
 use proptest::collection::vec;
 use proptest::prelude::*;

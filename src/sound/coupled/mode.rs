@@ -53,9 +53,9 @@ pub struct CoupledMode {
     /// Decay rate in nepers per second; never negative.
     pub decay_rate: f64,
     /// Mode shapes where the first body and the second body are struck.
-    pub strike: [Complex; 2],
+    pub(crate) strike: [Complex; 2],
     /// Mode shapes where the two bodies are heard, scaled so that `strike · pickup` is the complex amplitude.
-    pub pickup: [Complex; 2],
+    pub(crate) pickup: [Complex; 2],
 }
 
 /// The two parts of a damped sinusoid: at time `t` in seconds it is `e^(−σt) (cosine · cos ωt + sine · sin ωt)`.

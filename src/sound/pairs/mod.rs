@@ -1,6 +1,6 @@
 //! Two bodies that make one sound: their link, the strike, and the pickup.
 //!
-//! A [`Pair`] is two [bodies](super::bodies::Body) and their [`Link`]. Its modes are those of [`super::coupled`], exactly: poles and residues
+//! A [`Pair`] is two [bodies](super::bodies::Body) and their [`Link`]. Its modes are those of the module `coupled`, exactly: poles and residues
 //! of the whole. Each body follows the keys or keeps its own frequency ([`follows_key`](super::bodies::Body::follows_key)): the bar and the tube of a
 //! marimba both follow; a string follows and its soundboard does not. If one of them does not, every key needs its own
 //! table ([`Pair::table`]).
@@ -32,7 +32,7 @@
 //! pitch, T60, level and samples with an eigenproblem solved by SciPy.
 
 mod across;
-mod fields;
+pub(crate) mod fields;
 mod free;
 mod link;
 mod modes;
@@ -43,6 +43,6 @@ mod table;
 mod tests;
 mod tuned;
 
-pub use fields::{LINK_FIELDS, LinkField};
+pub(crate) use fields::{LINK_FIELDS, LinkField};
 pub use link::Link;
 pub use pair::Pair;

@@ -2,8 +2,8 @@
 
 use super::whole_bank;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use sprung::analysis::log_mel::{RATE, distance};
 use sprung::engine::{Event, EventKind, Synth};
-use sprung::internals::measures::log_mel::{RATE, distance};
 use sprung::patch::Patch;
 use sprung::patch::routes::{Source, macro_param};
 use sprung::preset::Preset;

@@ -2,9 +2,9 @@
 
 use super::played::{Outcome, Stereo, fitted_by, mean, preset_at};
 use sprung::analysis::fit::Family;
+use sprung::analysis::log_mel::RATE;
 use sprung::analysis::modes::{Mode, Settings, modes};
 use sprung::internals::editor::modes_of_body;
-use sprung::internals::measures::log_mel::RATE;
 use sprung::params::{Choice, MalletPulse, Param};
 use sprung::preset::Preset;
 use sprung::sound::bodies::{Body, Model, Point};

@@ -4,7 +4,7 @@
 //! `/`. Sounds that are not installed are skipped by name.
 
 use super::played::{Played, Stereo};
-use sprung::internals::measures::log_mel::RATE;
+use sprung::analysis::log_mel::RATE;
 use sprung::io::sound_file::{read, resampled};
 use std::fs::File;
 use std::path::{Path, PathBuf};

@@ -16,7 +16,7 @@ use measures::Measures;
 use played::{Outcome, fitted, in_parallel, log_mel_distance, preset_at};
 use sprung::Error;
 use sprung::analysis::fit::Family;
-use sprung::internals::measures::log_mel::RATE;
+use sprung::analysis::log_mel::RATE;
 use sprung::internals::measures::{DRUMS, TUNED};
 use sprung::internals::random::uniform;
 use sprung::preset::Preset;

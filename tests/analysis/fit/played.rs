@@ -1,8 +1,8 @@
 //! Sounds to fit: presets that are played, and the fit itself.
 
 use sprung::analysis::fit::{Family, Fitted, Settings, Take, VELOCITY, fit};
+use sprung::analysis::log_mel::{RATE, distance};
 use sprung::engine::{Event, EventKind, Synth};
-use sprung::internals::measures::log_mel::{RATE, distance};
 use sprung::io::sound_file::Recording;
 use sprung::preset::Preset;
 use sprung::units::mono_from_stereo;

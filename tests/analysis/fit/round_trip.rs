@@ -5,7 +5,7 @@ use super::played::{
     Outcome, Stereo, fitted_while, in_parallel, log_mel_distance, preset_at, preset_let_go, preset_of_seed,
 };
 use sprung::Error;
-use sprung::internals::measures::log_mel::RATE;
+use sprung::analysis::log_mel::RATE;
 use sprung::preset::Preset;
 
 const KEYS: [u8; 3] = [48, 60, 72];

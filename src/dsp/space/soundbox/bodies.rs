@@ -11,15 +11,15 @@ use std::sync::LazyLock;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resonance {
     /// Frequency in Hz.
-    pub frequency: f64,
+    pub(crate) frequency: f64,
     /// Bandwidth in Hz: where the response has fallen by 3 dB.
-    pub bandwidth: f64,
+    pub(crate) bandwidth: f64,
     /// Gain of a lasting sine at its frequency. Its sign is that of the mode shapes at the points of drive and pick-up.
-    pub gain: f64,
+    pub(crate) gain: f64,
     /// Whether it is heard as a velocity, and not as a displacement.
-    pub is_velocity: bool,
+    pub(crate) is_velocity: bool,
     /// Output gains, left and right: at most √2, and 1 in the middle.
-    pub sides: [f32; 2],
+    pub(crate) sides: [f32; 2],
 }
 
 impl Resonance {
