@@ -63,6 +63,8 @@ pub mod library {
 pub mod files {
     pub use crate::io::inputs::Inputs;
     pub use crate::io::output::Output;
+    #[cfg(feature = "fit")]
+    pub use crate::io::sound_file::codecs::DECODER;
     pub use crate::io::target::Target;
     #[cfg(feature = "render")]
     pub use crate::render::{looped::to_looped_wav, stems::*, wav::to_wav};
@@ -110,6 +112,29 @@ pub mod measures {
     }
     pub mod spectrum {
         pub use crate::analysis::spectrum::*;
+    }
+}
+
+/// What the command shows of the spring lab, and the integration that tests compare with.
+#[cfg(feature = "lab")]
+pub mod lab {
+    pub mod animation {
+        pub use crate::lab::animation::*;
+    }
+    pub mod convergence {
+        pub use crate::lab::figure::convergence::csv;
+    }
+    pub mod pitch {
+        pub use crate::lab::figure::pitch::{csv, notes};
+    }
+    pub mod reference {
+        pub use crate::lab::reference::*;
+    }
+    pub mod report {
+        pub use crate::lab::report::*;
+    }
+    pub mod stability {
+        pub use crate::lab::figure::stability::csv;
     }
 }
 

@@ -3,11 +3,11 @@
 //! | module | holds |
 //! |---|---|
 //! | [`System`], `energy` | the mass, spring, damper and force; energy and Lagrangian |
-//! | [`ClosedForm`], [`mod@reference`] | the exact motion; a fine integration for springs without a closed form |
+//! | [`ClosedForm`], `reference` | the exact motion; a fine integration for springs without a closed form |
 //! | [`Method`], `amplification` | the methods, one file each; the matrix of one step |
 //! | [`trajectory`] | a method run over a period of time, and its error |
 //! | [`comparison`], [`convergence`], [`stability`], [`pitch`], [`sound`] | measured behaviour: errors, orders, limits, tuning, audio |
-//! | [`figure`], [`animation`], [`report`] | figures, animations and an HTML page |
+//! | [`figure`], `animation`, `report` | figures, animations and an HTML page |
 //!
 //! All arithmetic is in `f64`; nothing here is real-time safe, and the instrument does not depend on it.
 //!
@@ -22,7 +22,7 @@
 //! ```
 
 pub(crate) mod amplification;
-pub mod animation;
+pub(crate) mod animation;
 pub(crate) mod closed_form;
 pub mod comparison;
 pub mod convergence;
@@ -30,8 +30,8 @@ pub(crate) mod energy;
 pub mod figure;
 pub(crate) mod method;
 pub mod pitch;
-pub mod reference;
-pub mod report;
+pub(crate) mod reference;
+pub(crate) mod report;
 pub mod sound;
 pub mod stability;
 pub(crate) mod system;

@@ -34,8 +34,8 @@ const ALLOWED: &[Row] = &[
     (
         "internals",
         &[
-            "analysis", "dsp", "engine", "error", "figure", "io", "manual", "params", "preset", "realtime", "render",
-            "request", "sound", "text",
+            "analysis", "dsp", "engine", "error", "figure", "io", "lab", "manual", "params", "preset", "realtime",
+            "render", "request", "sound", "text",
         ],
     ),
 ];

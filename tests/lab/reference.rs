@@ -1,6 +1,7 @@
 //! Compares the lab's true motions with SciPy's independent integrator; numbers from `scipy_reference.py`.
 
-use sprung::lab::{ClosedForm, Force, Spring, State, System, reference};
+use sprung::internals::lab::reference;
+use sprung::lab::{ClosedForm, Force, Spring, State, System};
 
 const NUMBERS: &str = include_str!("scipy_reference.csv");
 

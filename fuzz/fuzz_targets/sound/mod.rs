@@ -1,7 +1,8 @@
 //! What every reader of sound files is held to.
 
 use libfuzzer_sys::Corpus;
-use sprung::io::sound_file::{DECODER, read};
+use sprung::internals::files::DECODER;
+use sprung::io::sound_file::read;
 use std::io::{Seek, Write};
 use std::sync::Once;
 

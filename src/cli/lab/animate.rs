@@ -2,7 +2,7 @@
 
 use super::deliver::Files;
 use super::system::{MethodArgs, SystemArgs};
-use sprung::lab::animation::{Animation, gif, svg};
+use sprung::internals::lab::animation::{Animation, gif, svg};
 use sprung::lab::comparison::{Comparison, Setup};
 use sprung::{Error, Result};
 

@@ -4,10 +4,10 @@ use super::deliver::{Files, drawn};
 use super::system::{MethodArgs, SystemArgs};
 use super::table::{aligned, row};
 use sprung::Result;
+use sprung::internals::lab::report;
 use sprung::internals::text::{measured, short};
 use sprung::lab::comparison::{Comparison, Setup};
-use sprung::lab::figure::comparison::ComparisonFigure;
-use sprung::lab::report;
+use sprung::lab::figure::ComparisonFigure;
 use sprung::lab::trajectory::Trajectory;
 
 #[derive(clap::Args)]

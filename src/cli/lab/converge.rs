@@ -4,10 +4,11 @@ use super::deliver::{Files, drawn};
 use super::system::{MethodArgs, SystemArgs};
 use super::table::{aligned, row};
 use sprung::Result;
+use sprung::internals::lab::convergence::csv;
 use sprung::internals::text::measured;
 use sprung::lab::Order;
 use sprung::lab::convergence::{Convergence, converge, halving};
-use sprung::lab::figure::convergence::{ConvergenceFigure, csv};
+use sprung::lab::figure::ConvergenceFigure;
 
 #[derive(clap::Args)]
 pub(super) struct Args {

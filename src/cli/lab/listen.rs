@@ -6,7 +6,7 @@ use super::system::MethodArgs;
 use super::table::{aligned, row};
 use sprung::internals::text::short;
 use sprung::io::{SampleFormat, WavFormat, WavWriter};
-use sprung::lab::figure::sound::SoundFigure;
+use sprung::lab::figure::SoundFigure;
 use sprung::lab::sound::{Sound, listen};
 use sprung::{Error, Result};
 use std::path::PathBuf;

@@ -5,8 +5,9 @@ use super::deliver::{Files, drawn};
 use super::system::MethodArgs;
 use super::table::{aligned, row};
 use sprung::Result;
+use sprung::internals::lab::pitch::{csv, notes};
 use sprung::internals::text::short;
-use sprung::lab::figure::pitch::{PitchFigure, csv, notes};
+use sprung::lab::figure::PitchFigure;
 use sprung::lab::pitch::{Note, Outcome, musical_steps};
 
 #[derive(clap::Args)]

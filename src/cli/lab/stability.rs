@@ -3,9 +3,10 @@
 use super::deliver::{Files, drawn};
 use super::system::MethodArgs;
 use super::table::{aligned, row};
+use sprung::internals::lab::stability::csv;
 use sprung::internals::text::measured;
 use sprung::lab::Method;
-use sprung::lab::figure::stability::{Region, StabilityFigure, csv};
+use sprung::lab::figure::{Region, StabilityFigure};
 use sprung::lab::stability::{cell, limit, spaced, theory};
 use sprung::{Error, Result};
 

@@ -1,11 +1,10 @@
 //! Reads sound files: WAV of every kind, AIFF, FLAC, Ogg Vorbis and MP3.
 
-mod codecs;
+pub(crate) mod codecs;
 mod recording;
 mod resample;
 mod wav;
 
-pub use codecs::DECODER;
 pub use recording::Recording;
 pub use resample::resampled;
 

@@ -1,10 +1,16 @@
 //! The lab's figures.
 
-pub mod comparison;
-pub mod convergence;
-pub mod pitch;
-pub mod sound;
-pub mod stability;
+mod comparison;
+pub(crate) mod convergence;
+pub(crate) mod pitch;
+mod sound;
+pub(crate) mod stability;
+
+pub use comparison::ComparisonFigure;
+pub use convergence::ConvergenceFigure;
+pub use pitch::PitchFigure;
+pub use sound::SoundFigure;
+pub use stability::{Region, StabilityFigure};
 
 use super::method::Method;
 use crate::figure::panel::Stroke;
