@@ -1,7 +1,8 @@
 //! The choice of the device: from the command line or from the last run.
 
 use crate::devices::Chosen;
-use sprung::realtime::{Choice, device};
+use sprung::internals::realtime::device;
+use sprung::realtime::Choice;
 
 /// What has come of a choice: something that plays on its device.
 pub(super) type Opened<T> = (Chosen, T);
