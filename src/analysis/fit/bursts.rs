@@ -70,7 +70,7 @@ fn repeats(samples: &[f32], distance: usize) -> bool {
 
 /// The row of bursts with which samples at [`RATE`] begin, up to sixteen; none if their level does not rise regularly, or if they are
 /// a low tone.
-pub(super) fn teeth(samples: &[f32]) -> Option<Noise> {
+pub(super) fn train(samples: &[f32]) -> Option<Noise> {
     let row = row(samples, &TEETH)?;
     let spacing = (row.spacing * f64::from(RATE)) as usize;
     let end = samples.len().min(usize::from(row.hits) * spacing);
@@ -129,7 +129,7 @@ pub(super) mod tests {
     #[test]
     fn the_teeth_of_a_guiro_are_counted() {
         for (hits, spacing) in [(7_u8, 0.031), (12, 0.0173), (16, 0.026)] {
-            let found = teeth(&noise(|t| libm::exp(-since_burst(t, hits, spacing) / 0.006))).unwrap();
+            let found = train(&noise(|t| libm::exp(-since_burst(t, hits, spacing) / 0.006))).unwrap();
             assert_eq!(found.hits, hits, "{found:?}");
             assert!((found.spacing / spacing - 1.0).abs() < 0.01, "{found:?}, {spacing}");
         }
@@ -162,11 +162,11 @@ pub(super) mod tests {
     fn a_single_stroke_is_no_row() {
         for t60 in [0.05, 0.4, 10.0] {
             let stroke = noise(|t| libm::exp(-6.9 * t / t60));
-            assert_eq!([teeth(&stroke), echoes(&stroke)], [None; 2], "{t60}");
+            assert_eq!([train(&stroke), echoes(&stroke)], [None; 2], "{t60}");
         }
         let saw = |n: usize| (n as f32 * 55.0 / RATE as f32).fract() - 0.5;
         for sound in [Vec::new(), (0..RATE as usize).map(saw).collect()] {
-            assert_eq!([teeth(&sound), echoes(&sound)], [None; 2]);
+            assert_eq!([train(&sound), echoes(&sound)], [None; 2]);
         }
     }
 }

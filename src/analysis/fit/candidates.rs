@@ -5,7 +5,7 @@ use super::drift::Drift;
 use super::movement::Sweep;
 use super::prepared::{Prepared, SHORTEST, SLOW};
 use super::start::{Found, MOST_BEFORE_DB, Source};
-use super::{bursts, held, noise, start, sway, sweep};
+use super::{bursts, held, noise, oscillators, start, sweep};
 use crate::analysis::log_mel::RATE;
 use crate::error::Result;
 
@@ -39,7 +39,7 @@ const AFTER_ECHO: f64 = 0.5;
 /// * If it rises slowly: modes found after the rise.
 pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
     // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
-    let [of_still, of_drift, of_search, first, second, of_noise, of_echoes, of_sway, of_rest] = [
+    let [of_still, of_drift, of_search, first, second, of_noise, of_echoes, of_modulated, of_rest] = [
         [0.0, 0.25],
         [0.25, 0.45],
         [0.45, 0.5],
@@ -89,7 +89,7 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
     let strike = found[0].1.clone();
     if still > NOISE_DB && !drifts {
         let empty = || start::from(take, None, &Source { struck: false, ..all }, false);
-        found.extend(bursts::teeth(&take.mean).map(|noise| (Draft { noise, ..empty() }, strike.clone())));
+        found.extend(bursts::train(&take.mean).map(|noise| (Draft { noise, ..empty() }, strike.clone())));
         found.push((noise::lasting(take, most, empty()), strike.clone()));
         let late = Source { late: LATE * take.seconds(), struck: false, ..all };
         let (driven, _) = analysed(take, late, of_noise, tell)?;
@@ -101,7 +101,7 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
         found.extend(echoed.into_iter().map(|draft| (draft, strike.clone())));
     }
     if still > SWAYS_DB {
-        found.extend(swayed(take, most, &mut within(of_sway, tell))?);
+        found.extend(modulated(take, most, &mut within(of_modulated, tell))?);
     }
     if take.rise > SLOW {
         let swept = found[0].0.sweep;
@@ -138,8 +138,8 @@ fn echoed(take: &Prepared, row: Noise, most: usize, tell: &mut dyn FnMut(f64) ->
 }
 
 /// Drafts of a sound that oscillators move: the modes of the sound without that; none if it does not move regularly.
-fn swayed(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> bool) -> Result<Vec<Found>> {
-    let (oscillators, swept) = sway::find(take, &mut || tell(0.0))?;
+fn modulated(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> bool) -> Result<Vec<Found>> {
+    let (oscillators, swept) = oscillators::find(take, &mut || tell(0.0))?;
     if oscillators.is_empty() {
         return Ok(Vec::new());
     }
@@ -150,8 +150,8 @@ fn swayed(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> bool) -> Re
         // Noise that moves so is left to the bed.
         found.push((start::from(take, None, &Source { swept, late: 0.0, struck: false }, false), None));
     }
-    let swayed = |(draft, strike)| (Draft { oscillators: oscillators.clone(), ..draft }, strike);
-    Ok(found.into_iter().map(swayed).collect())
+    let modulated = |(draft, strike)| (Draft { oscillators: oscillators.clone(), ..draft }, strike);
+    Ok(found.into_iter().map(modulated).collect())
 }
 
 /// The residual of a strike in dB.

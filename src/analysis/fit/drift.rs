@@ -1,13 +1,13 @@
-//! The drift of a held sound: what the courses of its tones have in common, in pitch and in level.
+//! The drift of a held sound: what the tracks of its tones have in common, in pitch and in level.
 //!
 //! Players and slow oscillators move all tones of a sound alike, while beats move each tone in its own way. So each
-//! tone's course is measured, and what is common to all is their mean, in which a tone counts the less, the more it
+//! tone's track is measured, and what is common to all is their mean, in which a tone counts the less, the more it
 //! differs from the others. Without the drift, the sound is a sum of modes.
 
 use super::movement::Oscillator;
+use super::oscillators;
 use super::prepared::SLOW;
 use super::resample::Reader;
-use super::sway;
 use super::tones::{HOP, Tone, tones};
 use crate::analysis::line::Line;
 use crate::analysis::log_mel::RATE;
@@ -86,7 +86,7 @@ impl Drift {
     /// The tremolo that explains the level best, if it explains most of it.
     pub(super) fn tremolo(&self, tell: &mut dyn FnMut() -> bool) -> Result<Option<Oscillator>> {
         let point = |n: usize| [(n * HOP) as f64 / f64::from(RATE), 20.0 / LN_10 * self.level[n], 1.0];
-        let found = sway::tremolo((self.rise..self.level.len()).map(point).collect(), tell)?;
+        let found = oscillators::tremolo((self.rise..self.level.len()).map(point).collect(), tell)?;
         Ok(found.filter(|tremolo| tremolo.db.abs() > LEAST_TREMOLO_DB))
     }
 
@@ -127,16 +127,16 @@ impl Drift {
     /// The pitch and the level that tones have in common, from a moment on.
     fn left_in(&self, tones: &[Tone], from: usize) -> [Vec<f64>; 2] {
         let rise = self.rise.saturating_sub(from);
-        let rising = |mut course: Vec<[f64; 2]>| {
-            course.iter_mut().take(rise).for_each(|[_, weight]| *weight *= RISING);
-            course
+        let rising = |mut track: Vec<[f64; 2]>| {
+            track.iter_mut().take(rise).for_each(|[_, weight]| *weight *= RISING);
+            track
         };
         let [pitches, levels] =
             [Tone::pitches, Tone::levels].map(|of| tones.iter().map(of).map(rising).collect::<Vec<_>>());
         let (mut pitch, mut level) = (common(&pitches, rise, false), common(&levels, rise, true));
-        let hold = |course: &mut [f64], until: usize| {
-            let value = course.get(until).copied().unwrap_or(0.0);
-            course.iter_mut().take(until).for_each(|before| *before = value);
+        let hold = |track: &mut [f64], until: usize| {
+            let value = track.get(until).copied().unwrap_or(0.0);
+            track.iter_mut().take(until).for_each(|before| *before = value);
         };
         hold(&mut pitch, rise);
         let quiet = level.iter().take(rise).rposition(|level| *level < -MOST_RAISED).map_or(0, |last| last + 1);
@@ -144,12 +144,12 @@ impl Drift {
         [pitch, level]
     }
 
-    /// The value of a course, `time` samples after the onset.
-    fn at(course: &[f64], time: f64) -> f64 {
-        let place = (time / HOP as f64).clamp(0.0, (course.len() - 1) as f64);
+    /// The value of a track, `time` samples after the onset.
+    fn at(track: &[f64], time: f64) -> f64 {
+        let place = (time / HOP as f64).clamp(0.0, (track.len() - 1) as f64);
         let (before, part) = (place as usize, place.fract());
-        let after = (before + 1).min(course.len() - 1);
-        course[before] + part * (course[after] - course[before])
+        let after = (before + 1).min(track.len() - 1);
+        track[before] + part * (track[after] - track[before])
     }
 
     /// Samples at [`RATE`] without the drift.
@@ -165,45 +165,45 @@ impl Drift {
     }
 }
 
-/// What courses have in common: each is a list of values with weights, and apart from what is common has a constant value,
+/// What tracks have in common: each is a list of values with weights, and apart from what is common has a constant value,
 /// or if they `fall`, a line. In the first moments, until `rise`, more than that may be common.
-fn common(courses: &[Vec<[f64; 2]>], rise: usize, fall: bool) -> Vec<f64> {
-    let moments = courses.iter().map(Vec::len).min().unwrap_or(0);
+fn common(tracks: &[Vec<[f64; 2]>], rise: usize, fall: bool) -> Vec<f64> {
+    let moments = tracks.iter().map(Vec::len).min().unwrap_or(0);
     let mut common = vec![0.0; moments];
-    // The mean square of what each course has of its own, without the influence of the course on the mean.
-    let mut own = vec![1.0; courses.len()];
-    let mut own_lines = vec![[0.0; 2]; courses.len()];
+    // The mean square of what each track has of its own, without the influence of the track on the mean.
+    let mut own = vec![1.0; tracks.len()];
+    let mut own_lines = vec![[0.0; 2]; tracks.len()];
     for round in 0..WEIGHINGS {
-        for (course, line) in courses.iter().zip(&mut own_lines) {
-            *line = line_through(course, &common, fall);
+        for (track, line) in tracks.iter().zip(&mut own_lines) {
+            *line = line_through(track, &common, fall);
         }
-        let off = |course: &[[f64; 2]], line: &[f64; 2], n: usize| course[n][0] - line[0] - line[1] * n as f64;
-        let mut squares = vec![[0.0, 1e-30]; courses.len()];
+        let off = |track: &[[f64; 2]], line: &[f64; 2], n: usize| track[n][0] - line[0] - line[1] * n as f64;
+        let mut squares = vec![[0.0, 1e-30]; tracks.len()];
         for n in 0..moments {
             let weigh = |tone: usize| {
-                let rest = off(&courses[tone], &own_lines[tone], n) - common[n];
+                let rest = off(&tracks[tone], &own_lines[tone], n) - common[n];
                 let far = if round == 0 { 0.0 } else { rest * rest / (4.0 * own[tone]) };
-                courses[tone][n][1] / (own[tone] * (1.0 + far))
+                tracks[tone][n][1] / (own[tone] * (1.0 + far))
             };
-            let weights: Vec<f64> = (0..courses.len()).map(weigh).collect();
+            let weights: Vec<f64> = (0..tracks.len()).map(weigh).collect();
             let (sum, all) = weights.iter().enumerate().fold((0.0, 1e-12), |(sum, all), (tone, weight)| {
-                (sum + weight * off(&courses[tone], &own_lines[tone], n), all + weight)
+                (sum + weight * off(&tracks[tone], &own_lines[tone], n), all + weight)
             });
             common[n] = sum / all;
             for (tone, weight) in weights.iter().enumerate() {
-                let value = off(&courses[tone], &own_lines[tone], n);
+                let value = off(&tracks[tone], &own_lines[tone], n);
                 let others = if all - weight > 1e-9 * all { (sum - weight * value) / (all - weight) } else { value };
-                squares[tone][0] += courses[tone][n][1] * (value - others) * (value - others);
-                squares[tone][1] += courses[tone][n][1];
+                squares[tone][0] += tracks[tone][n][1] * (value - others) * (value - others);
+                squares[tone][1] += tracks[tone][n][1];
             }
         }
-        if courses.len() >= FEWEST {
+        if tracks.len() >= FEWEST {
             own = squares.iter().map(|[square, weight]| (square / weight).max(1e-14)).collect();
         }
     }
-    // The mean of what each course has of its own is not 0. Keep the share that is more than that (Wiener 1949).
-    let by_chance = if courses.len() >= FEWEST { 1.0 / own.iter().map(|own| 1.0 / own).sum::<f64>() } else { 0.0 };
-    // What is constant, or falls steadily, belongs to the courses.
+    // The mean of what each track has of its own is not 0. Keep the share that is more than that (Wiener 1949).
+    let by_chance = if tracks.len() >= FEWEST { 1.0 / own.iter().map(|own| 1.0 / own).sum::<f64>() } else { 0.0 };
+    // What is constant, or falls steadily, belongs to the tracks.
     let points: Vec<[f64; 2]> =
         common.iter().enumerate().map(|(n, value)| [*value, if n < rise { RISING } else { 1.0 }]).collect();
     let line = line_through(&points, &vec![0.0; moments], fall);
@@ -215,9 +215,9 @@ fn common(courses: &[Vec<[f64; 2]>], rise: usize, fall: bool) -> Vec<f64> {
     common
 }
 
-/// The line through a course without what is common, as its value at the first moment and its change per moment.
-fn line_through(course: &[[f64; 2]], common: &[f64], fall: bool) -> [f64; 2] {
-    let points = course.iter().zip(common).enumerate();
+/// The line through a track without what is common, as its value at the first moment and its change per moment.
+fn line_through(track: &[[f64; 2]], common: &[f64], fall: bool) -> [f64; 2] {
+    let points = track.iter().zip(common).enumerate();
     let line = Line::through(points.map(|(n, ([value, weight], common))| [n as f64, value - common, *weight]));
     line.map_or([0.0; 2], |line| if fall { [line.at(0.0), line.slope] } else { [line.y, 0.0] })
 }

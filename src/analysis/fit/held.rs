@@ -1,9 +1,9 @@
 //! Drafts a held sound: the modes of the sound without its drift.
 
-use super::course;
 use super::draft::{Draft, Partial, SHORTEST_T60, longest_t60};
 use super::drift::Drift;
 use super::movement::Sweep;
+use super::pitch_track;
 use super::prepared::Prepared;
 use super::start::{self, Found, Source};
 use super::tones::{HOP, Tone, tones};
@@ -63,7 +63,7 @@ pub(super) fn draft(
         strike.residual_db += more.residual_db;
         strike.residual = more.residual;
     }
-    let (swept, mean) = known.map_or_else(|| course::of_pitch(&drift.pitches()), |known| (known, 0.0));
+    let (swept, mean) = known.map_or_else(|| pitch_track::of_pitch(&drift.pitches()), |known| (known, 0.0));
     let mut draft = start::from(take, Some(&strike), &Source { swept, late: 0.0, struck: true }, true);
     let still = drift.removed_from(&take.mean);
     if known.is_none() {
@@ -82,13 +82,13 @@ pub(super) fn draft(
     Ok(drafts)
 }
 
-/// The tones of a sound, each with its course relative to the modes that leave `rest` of the sound.
+/// The tones of a sound, each with its track relative to the modes that leave `rest` of the sound.
 fn compared(sound: &[f32], rest: &[f32]) -> Vec<(Tone, Tone)> {
     let modes: Vec<f32> = sound.iter().zip(rest).map(|(sample, rest)| sample - rest).collect();
     tones(sound, None).into_iter().zip(tones(sound, Some(&modes))).collect()
 }
 
-/// Replaces the modes of each tone by a steady mode if that is nearer to the course of its level, or of `all` tones. `pairs` are
+/// Replaces the modes of each tone by a steady mode if that is nearer to the track of its level, or of `all` tones. `pairs` are
 /// those of [`compared`], of a sound that begins with a sample `from` the onset. The draft gets no more than `most` modes.
 fn steady(draft: &mut Draft, most: usize, pairs: &[(Tone, Tone)], from: usize, all: bool) {
     let moments = |seconds: f64| seconds * f64::from(RATE) / HOP as f64;

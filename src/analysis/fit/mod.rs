@@ -11,13 +11,13 @@
 //! | file | does |
 //! |---|---|
 //! | `take`, `names`, `prepared`, `release` | reads a take: its key and velocity, its onset and end, and where its key is let go |
-//! | `pitch`, `tones`, `course`, `sweep`, `drift`, `held`, `resample` | the pitch over time, and the sound without its movement |
-//! | `start`, `bed`, `noise`, `bursts`, `sway`, `movement` | first drafts: modes, noise for the rest, bursts, LFOs |
+//! | `pitch`, `tones`, `pitch_track`, `sweep`, `drift`, `held`, `resample` | the pitch over time, and the sound without its movement |
+//! | `start`, `bed`, `noise`, `bursts`, `oscillators`, `movement` | first drafts: modes, noise for the rest, bursts, LFOs |
 //! | `draft`, `audition` | a draft as a patch; plays it |
 //! | `candidates`, `improve`, `refine`, `correct`, `shaping` | the possible drafts, and their corrections by what they sound like |
 //! | `body`, `levels`, `tuned` | a physical model in place of a table of modes |
 //! | `layers` | how the sound follows velocity and key |
-//! | `doubts`, `summary`, `report` | warnings, words and the page that tell the result |
+//! | `warnings`, `summary`, `report` | warnings, words and the page that tell the result |
 //! | `like` | the presets that sound most like a recording |
 //! | `simplex` | minimises a function of a few numbers |
 
@@ -27,8 +27,6 @@ mod body;
 mod bursts;
 mod candidates;
 mod correct;
-mod course;
-mod doubts;
 mod draft;
 mod drift;
 mod held;
@@ -39,7 +37,9 @@ mod like;
 mod movement;
 mod names;
 mod noise;
+mod oscillators;
 mod pitch;
+mod pitch_track;
 mod prepared;
 mod refine;
 mod release;
@@ -50,11 +50,11 @@ mod shaping;
 mod simplex;
 mod start;
 mod summary;
-mod sway;
 mod sweep;
 mod take;
 mod tones;
 mod tuned;
+mod warnings;
 
 pub use body::{Explained, Family};
 pub use like::{LOOKED_AT, Model, Nearness};
@@ -219,16 +219,16 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     };
     let distances: Vec<f64> = layers.iter().zip(&prepared).enumerate().map(distance).collect();
     let mut warnings: Vec<String> = prepared.iter().flat_map(|take| take.warnings.clone()).collect();
-    warnings.extend(doubts::softer(takes, gain));
-    warnings.extend(doubts::of_takes(takes, &layers));
+    warnings.extend(warnings::softer(takes, gain));
+    warnings.extend(warnings::of_takes(takes, &layers));
     let each = takes.iter().zip(&fits);
-    warnings.extend(each.filter_map(|(take, (draft, strike))| doubts::hum(take, draft, strike.as_ref()?)));
+    warnings.extend(each.filter_map(|(take, (draft, strike))| warnings::hum(take, draft, strike.as_ref()?)));
     if draft.partials.iter().all(|partial| !partial.struck) {
         let guess = if take.key.is_none() { ", and its pitch is a guess" } else { "" };
         let message = "it was fitted as noise, as no mode that is struck comes nearer";
         warnings.push(format!("{}: {message}{guess}", takes[base].name));
     }
-    warnings.extend(doubts::of_distances(takes, &distances, base, explained.is_some()));
+    warnings.extend(warnings::of_distances(takes, &distances, base, explained.is_some()));
     if !progress(1.0) {
         return Err(Error::Interrupted);
     }

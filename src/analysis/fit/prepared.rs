@@ -97,7 +97,7 @@ impl Prepared {
         }
         // After the last of a row of bursts a sound falls by itself.
         let is_last = |release: &Release| {
-            let row = bursts::teeth(&middle[onset..end]);
+            let row = bursts::train(&middle[onset..end]);
             row.is_some_and(|row| libm::fabs(release.seconds - row.last()) < NEAR_LAST)
         };
         let release = Release::of_held(&middle[onset..end]).filter(|release| !is_last(release));

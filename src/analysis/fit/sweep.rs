@@ -3,9 +3,9 @@
 //! A sweep changes the frequencies of all modes by the same factor. If the recording is read at a speed that follows
 //! its pitch, the frequencies are constant, and the spectrum has the highest peaks.
 
-use super::course;
 use super::layers::slope;
 use super::movement::Sweep;
+use super::pitch_track;
 use super::simplex;
 use crate::analysis::level::rms;
 use crate::analysis::log_mel::RATE;
@@ -176,7 +176,7 @@ pub(super) fn find(samples: &[f32], tell: &mut dyn FnMut() -> Result<()>) -> Res
         .into_iter()
         .collect();
     // Keep the movement of the strongest partial if it makes the other partials constant, too.
-    let followed = course::find(samples);
+    let followed = pitch_track::find(samples);
     if !followed.is_none() && peaks.height(&followed)? > HARDLY * still {
         found.push(refine(&mut peaks, followed)?.1);
     }

@@ -1,4 +1,4 @@
-//! The tones of a sound: peaks of its mean spectrum, each with the course of its pitch and level.
+//! The tones of a sound: peaks of its mean spectrum, each with the track of its pitch and level.
 
 use crate::analysis::line::Line;
 use crate::analysis::log_mel::RATE;
@@ -6,7 +6,7 @@ use libm::{atan2, cos, log, log10, sin};
 use sprung_fourier::forward;
 use std::f64::consts::TAU;
 
-/// Samples from one moment of a course to the next.
+/// Samples from one moment of a track to the next.
 pub(super) const HOP: usize = 128;
 /// Samples per window of the mean spectrum, and points of its transform.
 const WINDOW: usize = 4096;
@@ -20,12 +20,12 @@ const VALLEY_DB: f64 = 10.0;
 const FAINT_DB: f64 = 55.0;
 const MOST: usize = 64;
 
-/// A tone and its course.
+/// A tone and its track.
 pub(super) struct Tone {
     /// Hz.
     pub(super) frequency: f64,
     /// Real and imaginary part of its amplitude at each moment, relative to a steady tone or to a model, with a weight.
-    course: Vec<([f64; 2], f64)>,
+    track: Vec<([f64; 2], f64)>,
     /// Cycles of the tone from one moment to the next.
     turns: f64,
 }
@@ -33,12 +33,12 @@ pub(super) struct Tone {
 impl Tone {
     /// The logarithm of its pitch at each moment, with its weight.
     pub(super) fn pitches(&self) -> Vec<[f64; 2]> {
-        let last = self.course.len() - 1;
+        let last = self.track.len() - 1;
         let pitch = |n: usize| {
             let (before, after) = (n.saturating_sub(1), (n + 1).min(last));
-            let (a, b) = (self.course[before].0, self.course[after].0);
+            let (a, b) = (self.track[before].0, self.track[after].0);
             let turn = atan2(b[1] * a[0] - b[0] * a[1], b[0] * a[0] + b[1] * a[1]) / TAU;
-            [turn / self.turns / (after - before).max(1) as f64, self.course[n].1]
+            [turn / self.turns / (after - before).max(1) as f64, self.track[n].1]
         };
         (0..=last).map(pitch).collect()
     }
@@ -56,7 +56,7 @@ impl Tone {
     /// the sound is over before.
     pub(super) fn line(&self, from: usize) -> Option<[f64; 2]> {
         // Windows that reach beyond the end show a fall.
-        let whole = self.course.len().saturating_sub(FOLLOWED / 2 / HOP);
+        let whole = self.track.len().saturating_sub(FOLLOWED / 2 / HOP);
         let points =
             self.levels().into_iter().enumerate().take(whole).skip(from).map(|(n, [level, _])| [n as f64, level, 1.0]);
         let line = Line::through(points)?;
@@ -67,11 +67,11 @@ impl Tone {
     /// The logarithm of its level at each moment, with its weight.
     pub(super) fn levels(&self) -> Vec<[f64; 2]> {
         let level = |([re, im], weight): &([f64; 2], f64)| [0.5 * log((re * re + im * im).max(1e-24)), *weight];
-        self.course.iter().map(level).collect()
+        self.track.iter().map(level).collect()
     }
 }
 
-/// The tones of samples at [`RATE`], followed every [`HOP`] samples: their courses, or if there is a model of the sound, how these
+/// The tones of samples at [`RATE`], followed every [`HOP`] samples: their tracks, or if there is a model of the sound, how these
 /// differ from the model's.
 pub(super) fn tones(samples: &[f32], model: Option<&[f32]>) -> Vec<Tone> {
     let levels = mean_spectrum(samples);
@@ -94,7 +94,7 @@ pub(super) fn tones(samples: &[f32], model: Option<&[f32]>) -> Vec<Tone> {
         let frequency = bin as f64 * f64::from(RATE) / POINTS as f64;
         let own = followed(samples, frequency);
         let reference = model.map(|model| followed(model, frequency));
-        Tone { frequency, course: against(&own, reference.as_deref()), turns: frequency * HOP as f64 / f64::from(RATE) }
+        Tone { frequency, track: against(&own, reference.as_deref()), turns: frequency * HOP as f64 / f64::from(RATE) }
     };
     bins.into_iter().map(tone).collect()
 }

@@ -100,11 +100,11 @@ mod tests {
                 drift.curves(1, MAX_MODES)[0]
             })
             .collect();
-        let course = |m: usize| curves.iter().map(move |row| row[m]);
+        let curve = |m: usize| curves.iter().map(move |row| row[m]);
         for m in [0, 5, 63] {
-            let (least, most) = course(m).fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
+            let (least, most) = curve(m).fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
             assert!((-1.0..-0.8).contains(&least) && (0.8..1.0).contains(&most), "{least} to {most}");
-            let values: Vec<f64> = course(m).collect();
+            let values: Vec<f64> = curve(m).collect();
             // The steepest slope between numbers from −1 to 1 is 1.5 · 2.
             let steepest = values.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max);
             assert!(steepest < 3.01 * rate * tick, "{steepest}");
@@ -112,7 +112,7 @@ mod tests {
             // Half of the numbers have another sign than the one before: 2 a second, in 20 s.
             assert!((24..56).contains(&crossings), "{crossings}");
         }
-        let product = |a: usize, b: usize| course(a).zip(course(b)).map(|(x, y)| x * y).sum::<f64>() / 30_000.0;
+        let product = |a: usize, b: usize| curve(a).zip(curve(b)).map(|(x, y)| x * y).sum::<f64>() / 30_000.0;
         assert!(product(3, 4).abs() < 0.35 * product(3, 3), "{} of {}", product(3, 4), product(3, 3));
     }
 }

@@ -133,8 +133,8 @@ pub(crate) fn fit(
         let fitted = fitted_to(&takes, &settings, &mut |_| check_signals().is_ok())?;
         Ok((fitted.named(&name, &takes).to_toml(), fitted.distances, fitted.warnings))
     });
-    let (preset, distances, doubts) = fitted.map_err(raised)?;
-    warnings.extend(doubts);
+    let (preset, distances, found) = fitted.map_err(raised)?;
+    warnings.extend(found);
     warn(py, &warnings)?;
     Ok((preset, distances))
 }

@@ -1,8 +1,8 @@
 //! Finds the low-frequency oscillators that explain a regular movement of pitch and level, as of a telephone or a bird.
 
-use super::course;
 use super::draft::MOST_OSCILLATORS;
 use super::movement::{Oscillator, Sweep};
+use super::pitch_track;
 use super::prepared::Prepared;
 use crate::analysis::level::{dbfs, rms};
 use crate::analysis::log_mel::RATE;
@@ -16,7 +16,7 @@ const SHAPES: [(Shape, usize); 4] = [(Shape::Sine, 8), (Shape::Triangle, 8), (Sh
 /// Fastest oscillator of the engine in Hz, and fastest movement of tones, whose levels are measured through windows of 46 ms.
 const FASTEST: f64 = 40.0;
 const FASTEST_OF_TONES: f64 = 16.0;
-/// Fewest cycles of the slowest oscillator, and step between rates, in cycles over the whole course.
+/// Fewest cycles of the slowest oscillator, and step between rates, in cycles over the whole track.
 const FEWEST_CYCLES: f64 = 1.5;
 const STEP: f64 = 0.25;
 /// Share of the squares left that an oscillator must explain, and that all must explain together.
@@ -35,7 +35,7 @@ const RIDGE: f64 = 1e-9;
 /// Samples from one level to the next, and range of levels in dB.
 const HOP: usize = 128;
 const RANGE_DB: f64 = 45.0;
-/// Least standard deviations of the level in dB and of the pitch in semitones at which they move, and fewest values of a course.
+/// Least standard deviations of the level in dB and of the pitch in semitones at which they move, and fewest values of a track.
 const LEAST_DB: f64 = 1.0;
 const LEAST_SEMITONES: f64 = 0.02;
 const FEWEST: usize = 100;
@@ -46,8 +46,8 @@ const MOST_DB: f64 = 36.0;
 /// A value at a time in seconds, with a weight.
 type Point = [f64; 3];
 
-/// A course that is explained by a mean, oscillators, and perhaps a slope.
-struct Course {
+/// A track that is explained by a mean, oscillators, and perhaps a slope.
+struct Track {
     points: Vec<Point>,
     has_slope: bool,
     /// Hz of the fastest oscillator.
@@ -63,10 +63,10 @@ struct Course {
     squares: f64,
 }
 
-impl Course {
-    /// A course that some oscillators move already.
+impl Track {
+    /// A track that some oscillators move already.
     fn new(points: Vec<Point>, has_slope: bool, oscillators: Vec<Oscillator>) -> Self {
-        let mut course = Self {
+        let mut track = Self {
             points,
             has_slope,
             fastest: FASTEST,
@@ -76,11 +76,11 @@ impl Course {
             base: Vec::new(),
             squares: 0.0,
         };
-        course.solve();
-        course.squares = course.left();
-        course.oscillators = oscillators;
-        course.solve();
-        course
+        track.solve();
+        track.squares = track.left();
+        track.oscillators = oscillators;
+        track.solve();
+        track
     }
 
     /// Seconds from its first value to its last.
@@ -191,7 +191,7 @@ impl Course {
         Ok(is_worth)
     }
 
-    /// Adds oscillators, and tells whether all of them explain most of the course.
+    /// Adds oscillators, and tells whether all of them explain most of the track.
     fn explain(&mut self, tell: &mut dyn FnMut() -> bool) -> Result<bool> {
         while self.oscillators.len() < MOST_OSCILLATORS && self.left() > LITTLE * self.squares && self.add(tell)? {}
         Ok(self.left() < (1.0 - WORTH_ALL) * self.squares)
@@ -201,16 +201,16 @@ impl Course {
 /// The oscillators that move a sound, and the sweep of its pitch beside them; none if they do not explain most of its movement.
 /// `tell` is called often, and ends the search by returning `false`.
 pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> bool) -> Result<(Vec<Oscillator>, Sweep)> {
-    let pitches = course::pitches(&take.mean);
-    let mut pitch = Course::new(pitches.clone(), false, Vec::new());
+    let pitches = pitch_track::pitches(&take.mean);
+    let mut pitch = Track::new(pitches.clone(), false, Vec::new());
     let mut swept = Sweep::NONE;
     let of_pitch = if pitch.moves(LEAST_SEMITONES) && pitch.explain(tell)? {
         let left: Vec<(f64, f64)> = pitches.iter().zip(&pitch.rest).map(|([time, ..], rest)| (*time, *rest)).collect();
-        let (sweep, _) = course::of_pitch(&left);
+        let (sweep, _) = pitch_track::of_pitch(&left);
         if sweep.semitones != 0.0 {
             let envelope = sweep.envelope();
             let without = pitches.into_iter().map(|[time, pitch, weight]| [time, pitch - envelope.at(time), weight]);
-            let mut again = Course::new(without.collect(), false, Vec::new());
+            let mut again = Track::new(without.collect(), false, Vec::new());
             if again.explain(tell)? && again.left() < pitch.left() {
                 (pitch, swept) = (again, Sweep { vibrato: Sweep::NONE.vibrato, ..sweep });
             }
@@ -219,7 +219,7 @@ pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> bool) -> Result<(V
     } else {
         Vec::new()
     };
-    let mut level = Course::new(levels(&take.mean), true, of_pitch.clone());
+    let mut level = Track::new(levels(&take.mean), true, of_pitch.clone());
     let explained = level.moves(LEAST_DB) && level.explain(tell)?;
     let oscillators = if explained { level.oscillators.clone() } else { of_pitch.clone() };
     let oscillator = |(n, oscillator): (usize, Oscillator)| Oscillator {
@@ -233,10 +233,10 @@ pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> bool) -> Result<(V
     Ok(if is_playable { (found, swept) } else { (Vec::new(), Sweep::NONE) })
 }
 
-/// The tremolo that explains a course of levels of tones in dB best, if it explains most of it. `tell` is called often, and ends the
+/// The tremolo that explains a track of levels of tones in dB best, if it explains most of it. `tell` is called often, and ends the
 /// search by returning `false`.
 pub(super) fn tremolo(levels: Vec<Point>, tell: &mut dyn FnMut() -> bool) -> Result<Option<Oscillator>> {
-    let mut level = Course { fastest: FASTEST_OF_TONES, ..Course::new(levels, true, Vec::new()) };
+    let mut level = Track { fastest: FASTEST_OF_TONES, ..Track::new(levels, true, Vec::new()) };
     let is_found = level.points.len() >= FEWEST && level.add(tell)? && level.left() < (1.0 - WORTH_ALL) * level.squares;
     let tremolo = level.oscillators.first().zip(level.factors.first());
     Ok(tremolo.filter(|_| is_found).map(|(oscillator, db)| Oscillator { db: *db, ..*oscillator }))
@@ -270,10 +270,10 @@ mod tests {
         ];
         let value = |t: f64| -20.0 - 3.0 * t + known.iter().map(|known| known.db * known.at(t)).sum::<f64>();
         let points = (0..800).map(|n| 0.0025 * f64::from(n)).map(|t| [t, value(t), 1.0]).collect();
-        let mut course = Course::new(points, true, Vec::new());
-        assert!(course.explain(&mut || true).unwrap());
-        assert_eq!(course.oscillators.len(), 2);
-        for ((found, factor), known) in course.oscillators.iter().zip(&course.factors).zip(&known) {
+        let mut track = Track::new(points, true, Vec::new());
+        assert!(track.explain(&mut || true).unwrap());
+        assert_eq!(track.oscillators.len(), 2);
+        for ((found, factor), known) in track.oscillators.iter().zip(&track.factors).zip(&known) {
             let off = libm::remainder(found.phase - known.phase, 1.0).abs();
             let is_near = found.shape == known.shape && (found.rate / known.rate - 1.0).abs() < 0.02 && off < 0.03;
             assert!(is_near && (factor / known.db - 1.0).abs() < 0.1, "{found:?} {factor}, {known:?}");

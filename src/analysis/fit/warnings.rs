@@ -104,8 +104,11 @@ mod tests {
         let takes = ["a", "b", "c"].map(take);
         let layers =
             [0.5, 1.0, 0.5].map(|velocity| Layer { draft: Draft { velocity, ..draft([0.5, 0.1]) }, level: 0.1 });
-        let doubts = of_takes(&takes, &layers);
-        assert!(doubts[0].starts_with("c: it has the key and velocity of a (") && doubts.len() == 1, "{doubts:?}");
+        let warnings = of_takes(&takes, &layers);
+        assert!(
+            warnings[0].starts_with("c: it has the key and velocity of a (") && warnings.len() == 1,
+            "{warnings:?}"
+        );
         assert_eq!(of_takes(&takes[..2], &layers[..2]), [""; 0]);
     }
 
