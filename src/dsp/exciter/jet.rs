@@ -1,5 +1,4 @@
-//! The jet of a flute: a sheet of air that the sound bends as it crosses the mouth of a tube, and that blows into the tube or
-//! past its edge.
+//! The jet of a flute: a sheet of air that the sound bends, so that it blows into the tube or past its edge.
 
 use super::breath::Breath;
 use libm::{exp, sqrt, sqrtf};
