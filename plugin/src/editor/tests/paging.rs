@@ -91,7 +91,7 @@ fn a_kit_has_no_lamps_and_all_knobs() {
 
 #[test]
 fn held_noise_is_noise() {
-    let mut band = Band::new("Piccolo", SIZE, Theme::Dark);
+    let mut band = Band::new("Whistle", SIZE, Theme::Dark);
     let levels = |band: &Band| [Param::NoiseLevel, Param::NoiseHeld].map(|param| band.value(param));
     let (before, least) = (levels(&band), [Param::NoiseLevel, Param::NoiseHeld].map(|param| param.info().min));
     assert!(before[1] > least[1]);
