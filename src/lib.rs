@@ -5,10 +5,10 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`dsp`] | pure numerics: the oscillator, the bank of modes, exciters, pitch envelopes, smoothing |
+//! | [`dsp`] | pure numerics: the oscillator, its coefficients, and the bank of modes |
 //! | [`params`], [`patch`], [`preset`] | the parameters, a set of their values with modes and routes, and its file |
 //! | [`sound`] | kits, bodies, and the tuning of the keys, also by Scala's files |
-//! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
+//! | [`engine`] | events, the synth, the ensemble of sixteen channels |
 //! | [`io`] | songs, MIDI files, and files that are written whole or not at all; WAV files out (feature `render`), sound files in (feature `fit`) |
 //! | `render` | the offline renderer (feature `render`) |
 //! | `batch` | thousands of sounds from a file of jobs, with exact labels (feature `batch`) |

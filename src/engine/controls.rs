@@ -48,7 +48,7 @@ pub(crate) struct Controls {
     /// Speed of the bow, at least 0, and the pressure of the bow, 0–1.
     pub(crate) bow_speed: f32,
     pub(crate) bow_force: f32,
-    /// Pressure of the breath, 1 closes a reed; opening of the valve, 0–1; semitones of its tension; turbulence, 0–1.
+    /// Pressure of the breath, 1 closes a reed; opening of the valve or the jet, 0–1; semitones of its tension; turbulence, 0–1.
     pub(crate) breath_pressure: f32,
     pub(crate) breath_opening: f64,
     pub(crate) breath_lip: f64,

@@ -23,10 +23,12 @@ pub(crate) mod stream;
 
 pub(crate) use block_clock::BlockClock;
 pub use block_clock::{Moment, Stamp};
+pub use convert::DeviceSample;
 pub use device::{Choice, Found};
 pub use live::{LiveEvent, LiveInputs, LiveSender};
 pub use midi_in::MidiIn;
 pub use player::{KitSender, Player, Setup};
+pub use recorder::Tap;
 pub use session::Session;
 pub use status::Status;
 pub use stream::Source;

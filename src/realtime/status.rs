@@ -19,7 +19,8 @@ pub struct Status {
 }
 
 impl Status {
-    /// A status that shares its telemetry with another reader.
+    /// A status that shares its telemetry with another reader, for this project's own displays.
+    #[doc(hidden)]
     pub fn of(telemetry: Arc<Telemetry>) -> Self {
         Self { telemetry, ..Self::default() }
     }

@@ -45,9 +45,9 @@ const SPEED: f64 = 4.0;
 const SOFTEST: f64 = 1e-3;
 
 /// A jet is in step with its note at this pressure. Harder breath makes it faster, by the square root; the player takes back most of
-/// that by the distance of the lips, and this power is left.
+/// that by the distance of the lips; what is left is this power of the pressure.
 const IN_STEP: f64 = 0.6;
-const LEFT: f64 = 0.15;
+const SPEED_POWER: f64 = 0.15;
 
 /// The mouthpiece of a kind under a pressure, whose tension is moved by `lip` semitones, for a note of this frequency in Hz.
 pub(crate) fn law(kind: Kind, lip: f64, pressure: f64, frequency: f64) -> MouthpieceLaw {
@@ -61,7 +61,9 @@ pub(crate) fn law(kind: Kind, lip: f64, pressure: f64, frequency: f64) -> Mouthp
             let own = LIPS_RATIO * frequency;
             MouthpieceLaw::Valve(ValveLaw { frequency: tension * own, quality: LIPS_QUALITY, reach: LIPS_REACH })
         }
-        Kind::Jet => MouthpieceLaw::Jet(JetLaw { frequency: tension * frequency * pow(pressure / IN_STEP, LEFT) }),
+        Kind::Jet => {
+            MouthpieceLaw::Jet(JetLaw { frequency: tension * frequency * pow(pressure / IN_STEP, SPEED_POWER) })
+        }
     }
 }
 
@@ -83,7 +85,7 @@ pub(crate) fn share(mode: &Mode, frequency: f64, sample_rate: f64) -> f64 {
 /// What a mode takes and gives, as [`ModeBank::set_contact`] wants it: with its share of the flow, its level and the level of the
 /// loudest mode, the frequency of its ratio, and the amplitude that a pressure of 1 has in a mode of level and ratio 1.
 pub(crate) fn contact(share: f64, [level, loudest]: [f64; 2], ratio: f64, amplitude: f64) -> [f32; 2] {
-    if share == 0.0 || loudest == 0.0 {
+    if share == 0.0 || loudest == 0.0 || amplitude == 0.0 {
         return [0.0; 2];
     }
     let heard = amplitude * pow(ratio, HEARD) * fabs(level).max(SOFTEST * loudest).copysign(level);
@@ -95,7 +97,7 @@ const FIRST_KEY: usize = 24;
 const KEYS_APART: usize = 3;
 const TUNED: usize = 29;
 
-/// How the sound is played to be tuned: at this rate in Hz, at this velocity. (The pitch is the same within a cent at all rates
+/// How the sound is played to be tuned: at this rate in Hz, at this velocity. (The pitch is the same within two cents at all rates
 /// from 44.1 kHz on.)
 const RATE: f64 = 48_000.0;
 const VELOCITY: f32 = 0.75;
@@ -181,16 +183,18 @@ fn cents_off(patch: &Patch, key: f64, cents: f64) -> Option<f64> {
     bank.load(&rows);
     // Heard is what the mouthpiece feels: all modes alike.
     shares().enumerate().for_each(|(m, share)| bank.set_contact(m, share as f32, rows.left[m]));
+    let kind = Kind::from_value(patch.get(Param::BreathValve));
     let pressure = 0.01 * value(Param::BreathPressure);
+    let steady = [pressure as f32, 0.0];
     let mut mouthpiece = Mouthpiece::REST;
     mouthpiece.breath = Breath {
-        pressure: [pressure as f32, 0.0],
+        // What starts a jet is that its pressure rises.
+        pressure: if kind == Kind::Jet { [0.0, steady[0] / CONTROL_FRAMES as f32] } else { steady },
         opening: flow(0.01 * value(Param::BreathOpening)) as f32,
         per_frame: (frequency / RATE) as f32,
         shares: shares().sum::<f64>() as f32,
         ..Breath::NONE
     };
-    let kind = Kind::from_value(patch.get(Param::BreathValve));
     mouthpiece.set(law(kind, value(Param::BreathLip), pressure, frequency), RATE);
 
     let frames = |[seconds, periods]: [f64; 2]| (RATE * f64::max(seconds, periods / wanted)) as usize;
@@ -200,31 +204,37 @@ fn cents_off(patch: &Patch, key: f64, cents: f64) -> Option<f64> {
         bank.sweep_to(1.0, CONTROL_FRAMES);
         let [left, _] = bank.render_played(None, Some(Player::Breath(&mut mouthpiece)), CONTROL_FRAMES);
         heard.extend_from_slice(left);
+        mouthpiece.breath.pressure = steady;
     }
     let loudest = heard[settled..].iter().fold(0.0, |most: f32, sample| most.max(sample.abs()));
-    (loudest > SPEAKS).then(|| 1200.0 * libm::log2(frequency_of(&heard[settled..], window, wanted) / wanted))
+    let (frequency, fundamental) = frequency_of(&heard[settled..], window, wanted);
+    let speaks = amplitude(kind, loudest.into()) > SPEAKS && fundamental > FUNDAMENTAL * f64::from(loudest);
+    speaks.then(|| 1200.0 * libm::log2(frequency / wanted))
 }
 
-/// A note speaks if the pressure in its tube reaches this.
-const SPEAKS: f32 = 0.05;
+/// A note speaks if the pressure in its tube reaches this, or its speed a quarter of it; and on its own mode if its fundamental has this
+/// share of the peak: of an overblown note some −80 dB are left.
+const SPEAKS: f64 = 0.05;
+const FUNDAMENTAL: f64 = 0.03;
 
-/// The frequency in Hz of a steady tone near `guess`: from how far the phase of its fundamental advances between two windows,
+/// The frequency in Hz of a steady tone near `guess`, and its amplitude: from how far the phase of its fundamental advances between two windows,
 /// farther and farther apart, so that each distance tells the next one’s whole periods.
-fn frequency_of(heard: &[f32], window: usize, guess: f64) -> f64 {
-    let mut frequency = guess;
+fn frequency_of(heard: &[f32], window: usize, guess: f64) -> (f64, f64) {
+    let (mut frequency, mut amplitude) = (guess, 0.0);
     for apart in [window / 64, window / 16, window / 4, window] {
-        let phase = |start: usize| {
+        let mut phase = |start: usize| {
             let (mut re, mut im) = (0.0, 0.0);
             for (i, sample) in heard[start..start + window].iter().enumerate() {
                 let hann = f64::from(*sample) * (1.0 - cos(TAU * i as f64 / window as f64));
                 let angle = TAU * frequency * (start + i) as f64 / RATE;
                 (re, im) = (re + hann * cos(angle), im - hann * sin(angle));
             }
+            amplitude = 2.0 * libm::hypot(re, im) / window as f64;
             atan2(im, re)
         };
         let advance = phase(apart) - phase(0);
         let advance = advance - TAU * libm::round(advance / TAU);
         frequency += advance / TAU * RATE / apart as f64;
     }
-    frequency
+    (frequency, amplitude)
 }

@@ -176,6 +176,44 @@ fn gestures_are_heard() {
     assert!(off.abs() < 3.0 && rms(&slurred[48_480..50_000]) > 0.3 * rms(&slurred[40_000..48_000]), "{off:.2}");
 }
 
+/// A note that is struck again ends, though its sound is replaced or its breath switched off in the same moment.
+#[test]
+fn a_note_ends_whose_sound_goes_as_it_is_struck_again() {
+    let bowed = horn().with(Param::BreathLevel, OFF).with(Param::BowLevel, -20.0).with(Param::Decay, 2.0);
+    for patch in [horn(), horn().with(Param::BreathValve, 2.0), bowed] {
+        for later in [0, 1, 7, 31] {
+            let mut synth = Synth::new(RATE, 1);
+            synth.set_patch(&patch);
+            let play = |synth: &mut Synth, events: &[Event], frames: usize| {
+                let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
+                synth.process(events, &mut left, &mut right);
+                rms(&left)
+            };
+            let before = play(&mut synth, &[on(0, 60)], 24_010);
+            if later > 0 {
+                play(&mut synth, &[on(0, 60)], later);
+                synth.set_patch(&Patch::default());
+            } else {
+                synth.set_patch(&Patch::default());
+                play(&mut synth, &[on(0, 60)], 1);
+            }
+            play(&mut synth, &[off(0, 60)], 24_000);
+            let after = play(&mut synth, &[], 96_000);
+            assert!(before > 1e-3 && after < before, "{later}: {before} {after}");
+            play(&mut synth, &[], 960_000);
+            assert!(synth.is_silent(), "{later}");
+        }
+    }
+    // The louder the strike, the less breath: at full velocity, none.
+    for valve in [0.0, 2.0] {
+        let patch = horn().with(Param::BreathValve, valve).with_route(0, Source::Velocity, Param::BreathLevel, -50.0);
+        let again = [Event::note_on(0, 60, 0.04), Event::note_on(24_000, 60, 1.0), off(36_000, 60)];
+        let sound = render(&patch, RATE, &again, 96_000);
+        assert!(sound.iter().all(|sample| sample.is_finite()), "{valve}");
+        assert!(rms(&sound[12_000..24_000]) > 1e-3 && rms(&sound[72_000..]) < 1e-4, "{valve}");
+    }
+}
+
 /// Noise that is held keeps a mode with a T60 of 1 s at the amplitude that its level says, for as long as the key is down.
 #[test]
 fn held_noise_has_its_level_and_ends() {

@@ -27,7 +27,7 @@ const NO_BREATH: f64 = 1e-4;
 pub(super) struct Blowing {
     mouthpiece: Mouthpiece,
     kind: Kind,
-    /// Amplitude at a pressure of 1, of a mode whose level is 1; 0 without breath.
+    /// Amplitude of a mode whose level is 1, at a pressure (of a jet, a speed) of 1; 0 without breath.
     amplitude: f64,
     attack: f64,
     tongue: f64,
@@ -82,7 +82,7 @@ impl Blowing {
     }
 
     /// Starts a ramp of the pressure that ends in `frames` frames, and sets the mouthpiece. Without `values`, a breath whose modes have
-    /// no contacts yet does not start.
+    /// no contacts does not start, or ends.
     pub(super) fn control(
         &mut self,
         controls: &Controls,
@@ -98,7 +98,11 @@ impl Blowing {
         }
         let Blown { frequency, sample_rate, age } = note();
         if !self.is_placed {
-            let Some(values) = values else { return };
+            let Some(values) = values else {
+                // Its sound is gone, and nobody would end its ramp.
+                (self.pressure, self.reached) = (Line::ZERO, 0.0);
+                return;
+            };
             self.place(values, frequency, sample_rate, bank);
         }
         let left = age / TONGUE_SECONDS;

@@ -49,7 +49,7 @@ impl Bowing {
     }
 
     /// Starts ramps of speed and force that end in `frames` frames. `note` returns the note's frequency and the sample rate in
-    /// Hz; it is called only if the bow is on. Without `values`, a bow that has no weights yet does not start.
+    /// Hz; it is called only if the bow is on. Without `values`, a bow that has no weights does not start, or ends.
     pub(super) fn control(
         &mut self,
         controls: &Controls,
@@ -64,7 +64,11 @@ impl Bowing {
             return;
         }
         if !self.is_placed {
-            let Some(values) = values else { return };
+            let Some(values) = values else {
+                // Its sound is gone, and nobody would end its ramps.
+                (self.bow_speed, self.bow_force) = (Line::ZERO, Line::ZERO);
+                return;
+            };
             self.place(values, bank);
         }
         let (pressure, [frequency, sample_rate]) = (f64::from(controls.bow_force), note());
