@@ -4,37 +4,46 @@ use crate::devices::Chosen;
 use sprung::internals::realtime::device;
 use sprung::realtime::Choice;
 
-/// What has come of a choice: something that plays on its device.
-pub(super) type Opened<T> = (Chosen, T);
-
-/// Opens the device of the command line, or of the last run; if that says none or it cannot be opened now, the system's default, or
-/// that of the first other sound system that has devices. A sound system or device of the command line has no substitute.
+/// Opens the device of the command line, or of the last run; if that cannot be opened now, a [`substitute`]. What the command line says
+/// of the device has none.
 ///
 /// # Errors
-/// Why the first of them cannot be opened, if none can; with no choice if the program can wait for another one.
+/// Why the first of them cannot be opened, if none can; with that choice if the program can wait for it.
 pub(super) fn open_first<T>(
     given: Chosen,
     last: Chosen,
     open: impl Fn(&Chosen) -> sprung::Result<T>,
     systems: impl Fn() -> Vec<String>,
     say: impl Fn(String),
-) -> Result<Opened<T>, (String, Option<Chosen>)> {
-    let is_given = given.host.is_some() || given.device.is_some();
-    let usual = Chosen { midi_in: given.midi_in.clone().or(last.midi_in.clone()), ..given.clone() };
+) -> Result<(Chosen, T), (String, Option<Chosen>)> {
+    let is_given = Chosen { midi_in: None, ..given.clone() } != Chosen::default();
     let first = merged(given, last);
     let error = match open(&first) {
         Ok(opened) => return Ok((first, opened)),
         Err(error) if is_given => return Err((error.to_string(), None)),
         Err(error) => plain(&error),
     };
-    let others = || systems().into_iter().map(|host| Chosen { host: Some(host), ..usual.clone() });
-    for chosen in std::iter::once(usual.clone()).filter(|usual| *usual != first).chain(others()) {
-        if let Ok(opened) = open(&chosen) {
+    match substitute(&first, open, systems) {
+        Some(opened) => {
             say(format!("not on the usual device: {error}"));
-            return Ok((chosen, opened));
+            Ok(opened)
         }
+        None => Err((error, Some(first))),
     }
-    Err((error, Some(usual)))
+}
+
+/// Opens another device if the first choice cannot be opened: the system's default, or that of the first sound system that has
+/// devices. Sample rate and block size belong to the first device.
+pub(super) fn substitute<T>(
+    first: &Chosen,
+    open: impl Fn(&Chosen) -> sprung::Result<T>,
+    systems: impl Fn() -> Vec<String>,
+) -> Option<(Chosen, T)> {
+    let usual = Chosen { midi_in: first.midi_in.clone(), ..Chosen::default() };
+    let of = |host| Chosen { host: Some(host), ..usual.clone() };
+    let others = std::iter::once_with(systems).flatten().map(of);
+    let mut all = std::iter::once(usual.clone()).chain(others).filter(|chosen| chosen != first);
+    all.find_map(|chosen| open(&chosen).ok().map(|opened| (chosen, opened)))
 }
 
 /// The sound systems that have devices.
@@ -81,21 +90,29 @@ mod tests {
     }
 
     #[test]
-    fn other_sound_systems_are_tried_if_none_was_given() {
-        let opened = |given: &Chosen, has: &[Option<&str>]| {
+    fn other_sound_systems_are_tried_if_nothing_was_given() {
+        let opened = |given: &Chosen, last: &Chosen, has: &[Option<&str>]| {
             let open = |chosen: &Chosen| match has.contains(&chosen.host.as_deref()) {
                 true => Ok(()),
                 false => Err(sprung::Error::value("--device", "none; ‘--list’ shows what there is".to_owned())),
             };
             let systems = || ["alsa", "jack"].map(str::to_owned).to_vec();
-            open_first(given.clone(), Chosen::default(), open, systems, |_| ()).map(|(chosen, ())| chosen)
+            open_first(given.clone(), last.clone(), open, systems, |_| ()).map(|(chosen, ())| chosen)
         };
-        let blocks = Chosen { buffer: Some(64), midi_in: Some("Key".to_owned()), ..Chosen::default() };
-        assert_eq!(opened(&blocks, &[None, Some("jack")]), Ok(blocks.clone()));
-        let jack = Chosen { host: Some("jack".to_owned()), ..blocks.clone() };
-        assert_eq!(opened(&blocks, &[Some("jack")]), Ok(jack.clone()), "with the same blocks");
-        assert_eq!(opened(&blocks, &[]), Err(("device: none".to_owned(), Some(blocks))), "silent");
-        assert!(opened(&jack, &[None]).is_err_and(|(_, waits)| waits.is_none()), "it was given");
+        let none = Chosen::default();
+        let keys = Chosen { midi_in: Some("Key".to_owned()), ..Chosen::default() };
+        assert_eq!(opened(&keys, &none, &[None, Some("jack")]), Ok(keys.clone()));
+        let jack = Chosen { host: Some("jack".to_owned()), ..keys.clone() };
+        assert_eq!(opened(&keys, &none, &[Some("jack")]), Ok(jack.clone()));
+        let silent = |waits: &Chosen| Err(("device: none".to_owned(), Some(waits.clone())));
+        assert_eq!(opened(&keys, &none, &[]), silent(&keys));
+        let last = Chosen { host: Some("tape".to_owned()), rate: Some(96_000), ..keys.clone() };
+        assert_eq!(opened(&none, &last, &[None]), Ok(keys.clone()), "its rate is that of the device");
+        assert_eq!(opened(&none, &last, &[]), silent(&last), "the user’s device is waited for");
+        let (rate, buffer) = (Chosen { rate: Some(8_000), ..none.clone() }, Chosen { buffer: Some(1), ..none.clone() });
+        for given in [jack, rate, buffer] {
+            assert!(opened(&given, &none, &[]).is_err_and(|(_, waits)| waits.is_none()), "it was given: {given:?}");
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Follows devices and ports, and saves the state, while the window is open.
 
-use super::chosen::{choice, plain, systems};
+use super::chosen::{choice, plain, substitute, systems};
 use super::messages::{print, report, tell};
 use super::player::WindowPlayer;
 use super::store::Store;
@@ -84,15 +84,10 @@ impl Supervisor {
                     tell(&self.params, midi.iter_mut().flat_map(MidiIn::poll).collect::<Vec<_>>());
                 }
                 None if Instant::now() >= open_at => {
-                    let usual = self.chosen.clone();
-                    let others = systems().into_iter().map(|host| Chosen { host: Some(host), ..usual.clone() });
-                    for chosen in std::iter::once(usual.clone()).chain(others) {
-                        if playing.is_none()
-                            && let Ok(opened) = Opened::of(&chosen, &self.params)
-                        {
-                            playing = Some(self.begin(chosen, opened));
-                        }
-                    }
+                    let open = |chosen: &Chosen| Opened::of(chosen, &self.params);
+                    let first = open(&self.chosen).ok().map(|opened| (self.chosen.clone(), opened));
+                    let found = first.or_else(|| substitute(&self.chosen, open, systems));
+                    playing = found.map(|(chosen, opened)| self.begin(chosen, opened));
                     open_at = Instant::now() + SEARCH;
                 }
                 None => {}
@@ -157,7 +152,7 @@ impl Supervisor {
         self.listening(opened)
     }
 
-    /// Begins with the requested device, if it can be opened.
+    /// Begins with the requested device, if it can be opened; if not, only the choice of ports holds.
     fn open(&mut self, request: Chosen) -> Option<Playing> {
         match Opened::of(&request, &self.params) {
             Ok(opened) => {
@@ -167,6 +162,11 @@ impl Supervisor {
             }
             Err(error) => {
                 report(&self.params, Some(format!("{}; still silent", plain(&error))));
+                // The ports are another matter.
+                if request.midi_in != self.chosen.midi_in {
+                    self.chosen.midi_in = request.midi_in;
+                    report(&self.params, self.store.save_devices(&self.chosen).err());
+                }
                 None
             }
         }
