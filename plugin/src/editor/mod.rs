@@ -53,7 +53,6 @@ mod widgets;
 mod window;
 
 use crate::params::SprungParams;
-use crate::state::View;
 use egui_baseview::GraphicsConfig;
 use host::extent;
 use nice_plug_core::context::gui::GuiContext;
@@ -74,15 +73,6 @@ pub struct SprungEditor {
 impl SprungEditor {
     pub(crate) fn new(params: Arc<SprungParams>) -> Self {
         Self { params }
-    }
-
-    /// The view, once it fits on the screen if no window is open.
-    fn fit(&self) -> View {
-        let extent = self.params.extent();
-        if !extent.is_open() {
-            self.params.set_view(|view| *view = extent::fitted(*view, extent.screen()));
-        }
-        self.params.view()
     }
 }
 
@@ -109,8 +99,14 @@ impl Editor for SprungEditor {
         host: Option<HostMethods>,
     ) -> Result<SpawnedEditor<Self::Handle>, Box<dyn Error>> {
         // The size that the host was told is at this scale, so the window must open with it too.
-        let scale_factor = self.params.extent().set_scale(fallback_scale_factor);
-        let view = self.fit();
+        let extent = self.params.extent();
+        let scale_factor = extent.set_scale(fallback_scale_factor);
+        if !extent.is_open() {
+            extent.look();
+            let screen = extent.screen();
+            self.params.set_view(|view| *view = extent::fitted(*view, screen));
+        }
+        let view = self.params.view();
         let [width, height] = view.size.map(|side| side as f32);
         let state = EguiEditorState::from_size(LogicalSize { width, height }, extent::factor(view));
         // The window has no gradients that would need dithering, which costs time for each pixel.
@@ -128,7 +124,7 @@ impl Editor for SprungEditor {
     }
 
     fn size(&self) -> NativeSize<u32> {
-        self.params.extent().size(self.fit())
+        self.params.extent().size(self.params.view())
     }
 
     fn scale_factor_suggested(&self, scale_factor: f64) {

@@ -19,6 +19,16 @@ struct Known {
     open: Option<PhysicalSize<u32>>,
     /// The scale that the host has told, or else that of the last window. If the screen says one itself, that comes first.
     scale: Option<f64>,
+    /// The screen, as it was when the window began to open.
+    screen: Option<Screen>,
+}
+
+/// What the system says of its largest screen.
+#[derive(Clone, Copy, Default)]
+struct Screen {
+    /// Width and height in pixels.
+    size: Option<[u32; 2]>,
+    scale: Option<f64>,
 }
 
 /// The factor between the window's contents at 100 % and at this zoom, as egui has it.
@@ -42,9 +52,25 @@ pub(crate) fn fitted(mut view: View, screen: Option<[f64; 2]>) -> View {
 impl Extent {
     /// Width and height of the screen in points, if they are known.
     pub(crate) fn screen(&self) -> Option<[f64; 2]> {
-        let (size, own) = of_screen();
-        let scale = own.or(self.known().scale).unwrap_or(1.0);
+        let seen = self.seen();
+        self.in_points(seen)
+    }
+
+    fn in_points(&self, Screen { size, scale }: Screen) -> Option<[f64; 2]> {
+        let scale = scale.or(self.known().scale).unwrap_or(1.0);
         size.map(|size| size.map(|side| f64::from(side) / scale))
+    }
+
+    /// A window begins to open: until it is closed, the screen counts as it is now.
+    pub(crate) fn look(&self) {
+        // The system may be slow to answer.
+        let screen = of_screen();
+        self.known().screen = Some(screen);
+    }
+
+    fn seen(&self) -> Screen {
+        let kept = self.known().screen;
+        kept.unwrap_or_else(of_screen)
     }
 
     fn known(&self) -> MutexGuard<'_, Known> {
@@ -60,7 +86,8 @@ impl Extent {
 
     /// The window is open in this size, without zoom.
     pub(crate) fn set(&self, WindowSize { physical, scale_factor, .. }: WindowSize) {
-        *self.known() = Known { open: Some(physical), scale: Some(scale_factor) };
+        let mut known = self.known();
+        (known.open, known.scale) = (Some(physical), Some(scale_factor));
     }
 
     pub(crate) fn is_open(&self) -> bool {
@@ -69,29 +96,34 @@ impl Extent {
 
     /// The window is closed.
     pub(crate) fn close(&self) {
-        self.known().open = None;
+        let mut known = self.known();
+        (known.open, known.screen) = (None, None);
     }
 
-    /// The size as the host counts it: that of the open window, or the one in which a window with this view will open.
+    /// The size as the host counts it: that of the open window, or the one in which a window with this view will open, as far as it
+    /// fits on the screen.
     pub(crate) fn size(&self, view: View) -> NativeSize<u32> {
-        let known = self.known();
-        let [width, height] = view.size.map(|side| f64::from(side) * f64::from(factor(view)));
-        match known.open {
-            Some(open) => NativeSize::from_size(Size::Physical(open), known.scale.unwrap_or(1.0)),
-            None => {
-                let scale = of_screen().1.or(known.scale).unwrap_or(1.0);
-                NativeSize::from_size(Size::Logical(LogicalSize { width, height }), scale)
-            }
+        let (open, scale) = {
+            let known = self.known();
+            (known.open, known.scale)
+        };
+        if let Some(open) = open {
+            return NativeSize::from_size(Size::Physical(open), scale.unwrap_or(1.0));
         }
+        let screen = self.seen();
+        let view = fitted(view, self.in_points(screen));
+        let [width, height] = view.size.map(|side| f64::from(side) * f64::from(factor(view)));
+        let scale = screen.scale.or(scale).unwrap_or(1.0);
+        NativeSize::from_size(Size::Logical(LogicalSize { width, height }), scale)
     }
 }
 
-/// Width and height of the largest screen in pixels, and the scale that it says of itself.
-fn of_screen() -> (Option<[u32; 2]>, Option<f64>) {
+/// Asks the system for its largest screen.
+fn of_screen() -> Screen {
     #[cfg(target_os = "linux")]
-    return x11::screen().map_or((None, None), |(size, scale)| (Some(size), scale));
+    return x11::screen().map_or_else(Screen::default, |(size, scale)| Screen { size: Some(size), scale });
     #[cfg(not(target_os = "linux"))]
-    (None, None)
+    Screen::default()
 }
 
 #[cfg(test)]
@@ -105,6 +137,12 @@ mod tests {
             let View { zoom, size, .. } = fitted(View { zoom, ..VIEW }, screen);
             (zoom, size)
         };
+        let small = Screen { size: Some([1280, 800]), scale: None };
+        let extent = Extent(Mutex::new(Known { screen: Some(small), ..Known::default() }));
+        let told = extent.size(View { zoom: 300, ..VIEW });
+        assert_eq!((told.width, told.height), (1280, 800), "what a host is told");
+        extent.close();
+        assert!(extent.known().screen.is_none(), "it may be another one the next time");
         assert_eq!(zoomed(300, None), (300, VIEW.size));
         assert_eq!(zoomed(200, Some([2560.0, 1440.0])), (200, [1100, 700]));
         assert_eq!(zoomed(300, Some([2560.0, 1440.0])), (300, [853, 480]));
