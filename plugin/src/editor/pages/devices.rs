@@ -78,6 +78,8 @@ pub(super) fn show(ui: &Ui, rect: Rect, controls: &mut Controls) {
         request.rate = rate;
     }
     let own = match devices.block {
+        // That of the present blocks is not its own.
+        _ if chosen.buffer.is_some() => "256 frames, or the nearest".to_owned(),
         0 => "256 frames, or the nearest".to_owned(),
         frames => format!("the usual: {frames} frames"),
     };

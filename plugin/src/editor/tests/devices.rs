@@ -81,6 +81,12 @@ fn what_is_picked_is_asked_for() {
     stage.harness.run_steps(3);
     let own = stage.harness.get_by_role_and_label(Role::ComboBox, "Block").accesskit_node().value();
     assert_eq!(own, text("the usual: 1024 frames"));
+    stage.params.link().devices.show(Devices { block: 64, ..devices() });
+    assert_eq!(
+        stage.pick_another("Block", "256 frames, or the nearest"),
+        Some(Chosen::default()),
+        "64 are not its own"
+    );
     // A chosen device that is not available now is still shown.
     let gone = Chosen { host: text("alsa"), device: text("hw:9"), rate: Some(22_050), ..Chosen::default() };
     stage.params.link().devices.show(Devices { chosen: gone, ..devices() });
