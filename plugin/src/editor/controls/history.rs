@@ -58,12 +58,24 @@ impl History {
     /// Loads a sound as one step.
     pub(crate) fn load(&mut self, playable: Playable, params: &SprungParams, host: &GuiContext) {
         self.begin(params);
-        self.lost = self.is_changed.then(|| params.name());
+        self.note_lost(params);
         let name = playable.name().to_owned();
         files::load(playable, params, host);
         self.chosen = Some(name.clone());
         self.end_step(name, false, false, params);
         self.is_changed = false;
+    }
+
+    /// Loads a sound that is in no file yet, as one step of this name.
+    pub(crate) fn load_new(&mut self, name: String, sound: Playable, params: &SprungParams, host: &GuiContext) {
+        self.begin(params);
+        self.note_lost(params);
+        files::load(sound, params, host);
+        self.end(name, params);
+    }
+
+    fn note_lost(&mut self, params: &SprungParams) {
+        self.lost = self.is_changed.then(|| params.name());
     }
 
     /// Loads one of a kit's sounds alone, as it is heard now, as one step.
@@ -81,9 +93,9 @@ impl History {
         self.chosen.take()
     }
 
-    /// The name of the sound that was changed, not saved, and replaced since the last call.
+    /// A message if a sound that was changed and not saved has been replaced since the last call.
     pub(crate) fn take_lost(&mut self) -> Option<String> {
-        self.lost.take()
+        self.lost.take().map(|name| format!("‘{name}’ was not saved: Undo brings it back"))
     }
 
     /// Like [`History::end`], after the sound was replaced by the other one of the two versions, which may be changed.

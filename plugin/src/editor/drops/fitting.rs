@@ -2,7 +2,6 @@
 
 use super::recordings::{self, Done};
 use crate::editor::background::Background;
-use crate::editor::controls::files;
 use crate::editor::controls::{Controls, Hint, Said};
 use crate::editor::widgets::progress::{Face, PAUSE, paint};
 use egui::{Rect, Ui};
@@ -35,10 +34,12 @@ impl Fitting {
             ui.ctx().request_repaint();
             return Some(ended.map(|done| {
                 controls.release();
-                controls.history.begin(controls.params);
-                files::load(Playable::Preset(done.preset), controls.params, controls.host);
-                controls.history.end(format!("Fit {name}"), controls.params);
-                done.message
+                let (step, preset) = (format!("Fit {name}"), Playable::Preset(done.preset));
+                controls.history.load_new(step, preset, controls.params, controls.host);
+                match controls.history.take_lost() {
+                    Some(lost) => format!("{lost}; {}", done.message),
+                    None => done.message,
+                }
             }));
         }
         ui.ctx().request_repaint_after(PAUSE);

@@ -171,7 +171,6 @@ fn is_kin(model: &Model, id: &str) -> bool {
         Model::Disc { .. } => "free_disc",
         Model::HandBell => "church_bell",
         Model::StoppedTube | Model::Cone { .. } | Model::TubularBell => "open_tube",
-        Model::Glass { .. } => "glass",
         _ => return false,
     };
     kin == id

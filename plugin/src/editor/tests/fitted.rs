@@ -232,9 +232,14 @@ fn what_is_no_recording_of_a_strike_says_so_and_changes_nothing() {
 #[test]
 fn what_is_doubtful_is_said_of_a_flac_that_does_not_decay() {
     let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    stage.tab("Model");
+    stage.button("Make it a marimba");
+    let changed = stage.params.name();
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/sounds/tone.flac"));
     stage.drop_files(&[path]);
     stage.wait();
+    stage.harness.event(egui::Event::PointerGone);
+    stage.assert_says(&format!("‘{changed}’ was not saved: Undo brings it back; "));
     stage.assert_says("tone.flac: the sound does not decay: expected something that is struck and rings");
     assert_eq!(stage.params.name(), "tone");
 }

@@ -100,6 +100,8 @@ pub(super) struct Window {
     loads: u64,
     /// The theme that was last applied to egui's own widgets.
     applied: Option<Theme>,
+    /// What has been said since the last pass, even if it is what was said before.
+    news: Option<Said>,
     message: Said,
     line: StatusLine,
 }
@@ -145,6 +147,7 @@ impl Window {
             now: 0.0,
             loads,
             applied: None,
+            news: None,
             message: Ok(String::new()),
             line: StatusLine::default(),
         }
@@ -159,7 +162,7 @@ impl Window {
     pub(super) fn open(&mut self, host: GuiContext) {
         self.host = Some(host);
         let read = self.params.read_controllers(self.browser.library());
-        self.message = read.map(|()| String::new()).map_err(|error| error.to_string());
+        self.news = Some(read.map(|()| String::new()).map_err(|error| error.to_string()));
         self.applied = None;
     }
 
@@ -240,11 +243,11 @@ impl Window {
         if seen != Some(Face::Motion) {
             self.motion.leave();
         }
-        let (mut read, mut picked) = (None, Vec::new());
+        let (mut reads, mut picked) = (false, Vec::new());
         match self.over {
             Some(Over::Browser) => {
                 if let Some((message, is_done)) = self.browser.show(ui, layout.page(), &mut controls) {
-                    self.message = message;
+                    self.news = Some(message);
                     self.over = self.over.filter(|_| !is_done);
                     if self.browser.is_stale() {
                         self.shown.read_again(&params);
@@ -262,7 +265,7 @@ impl Window {
                     match done {
                         Picked::Files(files) => picked = files,
                         Picked::Saved(message) => {
-                            self.message = Ok(message);
+                            self.news = Some(Ok(message));
                             // It may be one of the user's sounds.
                             self.browser.forget();
                         }
@@ -272,32 +275,28 @@ impl Window {
             }
             None if self.face == Face::Play => {
                 if let Some(message) = self.play.show(ui, layout.page(), &self.shown, &energies, &mut controls) {
-                    self.message = Err(message);
+                    self.news = Some(Err(message));
                 }
             }
             None if self.face == Face::Motion => {
-                if self.motion.show(ui, layout.page(), &self.shown, &mut controls).is_some() {
-                    read = Some("modulation");
-                }
+                reads = self.motion.show(ui, layout.page(), &self.shown, &mut controls).is_some();
             }
             None if self.face == Face::Kit => {
                 let (page, others) = (layout.page(), (down, &mut self.browser));
-                if self.kit.show(ui, page, &mut self.shown, others, &mut controls).is_some() {
-                    read = Some("kits");
-                }
+                reads = self.kit.show(ui, page, &mut self.shown, others, &mut controls).is_some();
             }
             None => {
                 self.modes.show(ui, layout.modes, &self.shown, &energies, &mut controls);
                 self.displays.show(ui, layout.displays, &self.shown, (&energies, self.modes.selected()), &mut controls);
                 match self.pages.show(ui, &layout, &self.shown, (down, voices), &mut controls) {
-                    Some(pages::Request::Manual) => read = Some(self.pages.topic()),
-                    Some(pages::Request::Say(message)) => self.message = message,
+                    Some(pages::Request::Manual) => reads = true,
+                    Some(pages::Request::Say(message)) => self.news = Some(message),
                     None => {}
                 }
             }
         }
-        if let Some(topic) = read {
-            self.manual.open(topic);
+        if reads {
+            self.manual.open(requests::topic(self.over, self.face, &self.pages));
             self.over = Some(Over::Manual);
         }
         if ui.input(|input| input.key_pressed(Key::Escape)) {
@@ -313,21 +312,21 @@ impl Window {
         picked.extend(drops::dropped(ui));
         let (recordings, files): (Vec<_>, Vec<_>) = picked.into_iter().partition(|path| drops::is_recording(path));
         for path in files {
-            self.message = drops::take(&path, self.browser.library(), &mut controls);
+            self.news = Some(drops::take(&path, self.browser.library(), &mut controls));
             self.browser.forget();
         }
         if !recordings.is_empty() {
-            self.message = self.fitting.begin(recordings);
+            self.news = Some(self.fitting.begin(recordings));
         }
         if let Some(message) = self.fitting.show(ui, layout.modes, &mut controls) {
-            self.message = message;
+            self.news = Some(message);
         }
         self.browser.follow_time(now, &controls);
         self.piano.show(ui, layout.piano, [down, self.shown.keys()], self.shown.guide(), &mut controls);
         // In a plugin, the computer's keyboard belongs to the host.
         let is_alone = host.plugin_api() == PluginApi::Standalone;
         let is_typing = ui.ctx().egui_wants_keyboard_input();
-        let by_key = (is_alone && !is_typing).then(|| asked_by_key(self.over, view.zoom, ui)).flatten();
+        let by_key = is_alone.then(|| asked_by_key(self.over, view.zoom, is_typing, ui)).flatten();
         let played = is_alone.then(|| self.computer_keyboard.follow(ui, params.link())).flatten();
         let bound = binding::follow(ui, self.browser.library(), &mut controls);
         let learnt = bound.or_else(|| learn::follow(ui, &mut controls));
@@ -341,7 +340,11 @@ impl Window {
             controls.release();
         }
         if let Some(messages) = learnt.or_else(|| params.link().take_messages()).or(played.map(Ok)) {
-            self.message = messages;
+            self.news = Some(messages);
+        }
+        if let Some(news) = self.news.take() {
+            self.message = news;
+            self.line.restart();
         }
         let complaint = controls.interaction.typing.as_ref().and_then(|typing| typing.complaint.clone());
         let is_quiet = self.message.as_ref().is_ok_and(String::is_empty);
@@ -351,21 +354,24 @@ impl Window {
         let load = self.load.share(now, telemetry, sample_rate);
         let engine = status::engine(voices, load, sample_rate);
         let waits = self.interaction.learning.is_some() || self.interaction.binding.is_some();
-        if self.line.show(ui, layout.status, hint.as_ref(), &message, &engine, palette) && !waits {
+        let has_stayed = self.line.show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
+        if has_stayed && !waits {
             self.message = Ok(String::new());
+            // It is still painted.
+            ui.ctx().request_repaint();
         }
-        let by_program = params.link().devices.is_wanted().then_some(Request::Devices);
-        if let Some(request) = request.or(by_key).or(by_program) {
+        let by_program = || params.link().devices.is_wanted().then_some(Request::Devices);
+        if let Some(request) = request.or(by_key).or_else(by_program) {
             self.carry_out(request, ui, host);
         }
-        if let Some(name) = self.history.take_lost() {
-            self.message = Ok(format!("‘{name}’ was not saved: Undo brings it back"));
+        if let Some(message) = self.history.take_lost() {
+            self.news = Some(Ok(message));
             ui.ctx().request_repaint();
         }
         if let (Some(name), Some(library)) = (self.history.take_chosen(), self.browser.library())
             && let Err(error) = library.note_recent(&name)
         {
-            self.message = Err(error.to_string());
+            self.news = Some(Err(error.to_string()));
         }
     }
 
@@ -376,13 +382,13 @@ impl Window {
         if std::mem::replace(&mut self.loads, loads) != loads {
             (self.history, self.other, self.is_b) = (History::default(), None, false);
             self.interaction.switched_off.clear();
-            self.message = Ok(String::new());
+            self.news = Some(Ok(String::new()));
         }
     }
 }
 
 /// What the computer's keys ask for, in the program alone.
-fn asked_by_key(over: Option<Over>, zoom: u32, ui: &Ui) -> Option<Request> {
+fn asked_by_key(over: Option<Over>, zoom: u32, is_typing: bool, ui: &Ui) -> Option<Request> {
     let larger = ZOOMS.into_iter().find(|other| *other > zoom).unwrap_or(zoom);
     let smaller = ZOOMS.into_iter().rev().find(|other| *other < zoom).unwrap_or(zoom);
     // With Shift first: a shortcut without it is also found with it.
@@ -397,8 +403,11 @@ fn asked_by_key(over: Option<Over>, zoom: u32, ui: &Ui) -> Option<Request> {
         (Modifiers::NONE, Key::F1, Request::Manual),
         (Modifiers::NONE, Key::Slash, Request::Browse),
     ];
-    let found =
-        shortcuts.into_iter().find(|(modifiers, key, _)| ui.input_mut(|input| input.consume_key(*modifiers, *key)));
+    // A field that is typed into has steps of its own, and a text may have a slash.
+    let is_typed = |request: &Request| is_typing && matches!(request, Request::Undo | Request::Redo | Request::Browse);
+    let found = shortcuts.into_iter().find(|(modifiers, key, request)| {
+        !is_typed(request) && ui.input_mut(|input| input.consume_key(*modifiers, *key))
+    });
     let request = found.map(|(_, _, request)| request)?;
     let is_taken = match request {
         // A list of sounds that is open is not closed by it, and a path begins with it.

@@ -7,11 +7,22 @@ use crate::editor::browser::Aim;
 use crate::editor::controls::files::load;
 use crate::editor::controls::history::{History, restore};
 use crate::editor::host::extent;
+use crate::editor::pages::Pages;
 use crate::params::SprungParams;
 use crate::state::View;
 use egui::Ui;
 use nice_plug_core::context::gui::GuiContext;
 use sprung::preset::{Playable, Preset};
+
+/// The page of the manual that explains what is shown.
+pub(super) fn topic(over: Option<Over>, face: Face, pages: &Pages) -> &'static str {
+    match (over, face) {
+        (None, Face::Sound) => pages.topic(),
+        (None, Face::Motion) => "modulation",
+        (None, Face::Kit) => "kits",
+        _ => "window",
+    }
+}
 
 impl Window {
     /// Loads the factory sound at this distance in the list.
@@ -25,25 +36,25 @@ impl Window {
     /// Replaces the sound by a random variation.
     fn vary(&mut self, variation: Variation, host: &GuiContext) {
         let Playable::Preset(preset) = self.params.state().playable else {
-            self.message = Err("a kit’s sounds cannot be varied together: load one of them".to_owned());
+            self.news = Some(Err("a kit’s sounds cannot be varied together: load one of them".to_owned()));
             return;
         };
         self.seed = self.seed.wrapping_add(1);
         match variation.of(&preset, self.seed, &self.locked) {
             Some(varied) => {
-                self.message = Ok(String::new());
+                self.news = Some(Ok(String::new()));
                 self.history.begin(&self.params);
                 load(Playable::Preset(varied), &self.params, host);
                 self.history.end(variation.name(), &self.params);
             }
-            None => self.message = Err("every variation that was tried is silent: unlock more sections".to_owned()),
+            None => self.news = Some(Err("every variation that was tried is silent: unlock more sections".to_owned())),
         }
     }
 
     /// Undoes or redoes a step, which may exchange the two versions.
     fn go_back(&mut self, go: impl FnOnce(&mut History, &SprungParams, &GuiContext) -> bool, host: &GuiContext) {
         // What was said of the step is no longer so.
-        self.message = Ok(String::new());
+        self.news = Some(Ok(String::new()));
         let now = (self.params.state(), self.history.is_changed());
         if go(&mut self.history, &self.params, host) {
             self.other = Some(now);
@@ -57,7 +68,7 @@ impl Window {
             Request::Browse | Request::Save => {
                 let closes = self.over == Some(Over::Browser) && request == Request::Browse;
                 self.over = (!closes).then_some(Over::Browser);
-                self.message = Ok(String::new());
+                self.news = Some(Ok(String::new()));
                 self.browser.open(&self.params.name(), if request == Request::Save { Aim::Save } else { Aim::Find });
             }
             Request::Undo => self.go_back(History::undo, host),
@@ -68,12 +79,7 @@ impl Window {
             }
             Request::Manual if self.over == Some(Over::Manual) => self.over = None,
             Request::Manual => {
-                self.manual.open(match (self.over, self.face) {
-                    (None, Face::Sound) => self.pages.topic(),
-                    (None, Face::Motion) => "modulation",
-                    (None, Face::Kit) => "kits",
-                    _ => "window",
-                });
+                self.manual.open(topic(self.over, self.face, &self.pages));
                 self.over = Some(Over::Manual);
             }
             Request::Devices => {

@@ -12,7 +12,7 @@ use std::time::Duration;
 const INTERVAL: f64 = 0.5;
 /// Seconds for which the pointer rests before a hint that is cut in the line is shown whole.
 const REST: f32 = 0.7;
-/// Seconds for which a message stays.
+/// Seconds for which it stays what was done.
 const STAYS: f64 = 8.0;
 /// The largest width of such a hint.
 const WIDEST: f32 = 400.0;
@@ -66,17 +66,22 @@ pub(super) fn summary(complaints: &[String]) -> Option<String> {
     Some(format!("Not all of the project’s state was understood: {first}{rest}"))
 }
 
-/// The line. A message stays for a while, or until the next one; a hint hides it while the pointer is over the widget, but only
+/// The line. What was done stays for a while, what went wrong until the next message; a hint hides it while the pointer is over the widget, but only
 /// once the pointer has moved: what a click or a key has led to must be seen where the pointer rests.
 #[derive(Default)]
 pub(super) struct StatusLine {
     message: Option<Said>,
-    /// When the message was first shown.
-    since: f64,
+    /// When the message was first shown since it was last said.
+    since: Option<f64>,
     is_unread: bool,
 }
 
 impl StatusLine {
+    /// The message has been said, perhaps again: its time begins anew.
+    pub(super) fn restart(&mut self) {
+        self.since = None;
+    }
+
     /// Shows the line. Returns whether the message has stayed long enough.
     pub(super) fn show(
         &mut self,
@@ -91,7 +96,7 @@ impl StatusLine {
         let has_moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO || input.pointer.any_pressed());
         self.is_unread &= !has_moved;
         if self.message.as_ref() != Some(message) {
-            (self.message, self.since) = (Some(message.clone()), now);
+            (self.message, self.since) = (Some(message.clone()), None);
             self.is_unread = !text_of(message).is_empty();
         }
         let hint = hint.filter(|_| !self.is_unread);
@@ -100,11 +105,13 @@ impl StatusLine {
         if let Some(hint) = hint.filter(is_cut) {
             show_above(ui, rect, hint);
         }
-        let left = self.since + STAYS - now;
-        if left > 0.0 && !text_of(message).is_empty() {
+        let left = *self.since.get_or_insert(now) + STAYS - now;
+        // What went wrong may last.
+        let goes = message.as_ref().is_ok_and(|text| !text.is_empty());
+        if goes && left > 0.0 {
             ui.ctx().request_repaint_after(Duration::from_secs_f64(left));
         }
-        left <= 0.0
+        goes && left <= 0.0
     }
 }
 
@@ -202,6 +209,26 @@ mod tests {
             assert!(output.shapes.iter().any(is_it), "{words}");
             output.textures_delta.clear();
         }
+    }
+
+    #[test]
+    fn what_was_done_goes_and_what_went_wrong_stays() {
+        let (context, palette) = (egui::Context::default(), Theme::Dark.palette());
+        let (done, wrong) = (Ok("saved".to_owned()), Err("refused".to_owned()));
+        let mut line = StatusLine::default();
+        let has_stayed = |line: &mut StatusLine, said: &Said, time: f64| {
+            let mut stayed = false;
+            let input = egui::RawInput { time: Some(time), ..Default::default() };
+            let show = |ui: &mut Ui| stayed = line.show(ui, ui.max_rect(), None, said, "", palette);
+            context.run_ui(input, show).textures_delta.clear();
+            stayed
+        };
+        assert!(!has_stayed(&mut line, &done, 1.0) && !has_stayed(&mut line, &done, 8.9));
+        line.restart();
+        assert!(!has_stayed(&mut line, &done, 9.0) && !has_stayed(&mut line, &done, 16.9), "it was said again");
+        assert!(has_stayed(&mut line, &done, 17.0));
+        assert!(!has_stayed(&mut line, &wrong, 18.0) && !has_stayed(&mut line, &wrong, 100.0), "it may last");
+        assert!(!has_stayed(&mut line, &Ok(String::new()), 101.0) && !has_stayed(&mut line, &Ok(String::new()), 200.0));
     }
 
     #[test]
