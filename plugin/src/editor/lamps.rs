@@ -31,7 +31,12 @@ pub(crate) const MOVERS: [Lamp; 6] = [
         ..lamp("Noise", Param::NoiseLevel, -6.0, "A burst of noise, or noise that lasts: a brush, a scrape, breath.")
     },
     lamp("Bow", Param::BowLevel, 0.0, "A bow, for as long as a key is held."),
-    lamp("Breath", Param::BreathLevel, -18.0, "Breath through a reed or lips, for as long as a key is held."),
+    lamp(
+        "Breath",
+        Param::BreathLevel,
+        -18.0,
+        "Breath through a reed, lips or a flute’s jet, for as long as a key is held.",
+    ),
     lamp("Input", Param::InputLevel, 0.0, "Incoming sound drives it, for as long as a key is held."),
 ];
 
