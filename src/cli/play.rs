@@ -196,7 +196,7 @@ impl Stage {
     /// Checks devices, ports and the recording. Returns messages for the user.
     fn poll(&mut self) -> Vec<String> {
         let mut news: Vec<String> = self.session.poll().into_iter().collect();
-        news.extend(self.midi.poll());
+        news.extend(self.midi.poll().into_iter().map(|message| message.unwrap_or_else(|problem| problem)));
         if let Some(take) = &mut self.recording
             && take.recording.has_ended()
             && !std::mem::replace(&mut take.told, true)

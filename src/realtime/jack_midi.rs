@@ -92,7 +92,7 @@ impl JackMidi {
     }
 
     /// Opens the port if there is a server, and connects the wanted ports. Returns messages for the user.
-    pub(crate) fn poll(&mut self) -> Vec<String> {
+    pub(crate) fn poll(&mut self) -> Vec<Result<String, String>> {
         if self.gone.swap(false, Ordering::AcqRel)
             && let Some(client) = self.client.take()
         {
@@ -115,7 +115,7 @@ impl JackMidi {
                 self.sender = self.home.1.try_recv().ok();
                 return news;
             }
-            news.push("MIDI port ‘sprung:midi_in’ is open".to_owned());
+            news.push(Ok("MIDI port ‘sprung:midi_in’ is open".to_owned()));
         }
         if let (Some(client), Some(wanted)) = (&self.client, &self.wanted) {
             let client = client.as_client();
@@ -127,7 +127,7 @@ impl JackMidi {
             for port in client.ports(None, Some("midi"), flags).into_iter().filter(|port| wanted.wants(port)) {
                 // Fails if the two are connected already.
                 if client.connect_ports_by_name(&port, &own).is_ok() {
-                    news.push(format!("MIDI port ‘{port}’ is connected"));
+                    news.push(Ok(format!("MIDI port ‘{port}’ is connected")));
                 }
             }
         }

@@ -41,8 +41,9 @@ impl MidiIn {
         }
     }
 
-    /// Checks for ports that have appeared or disappeared, and returns messages about them. Must be called regularly.
-    pub fn poll(&mut self) -> Vec<String> {
+    /// Checks for ports that have appeared or disappeared, and returns messages about them: what was done, or what went wrong. Must be
+    /// called regularly.
+    pub fn poll(&mut self) -> Vec<Result<String, String>> {
         match &mut self.0 {
             Kind::None(_) => vec![],
             Kind::Ports(ports) => ports.poll(),

@@ -71,8 +71,9 @@ impl MidiPorts {
         Some(sender)
     }
 
-    /// Connects new ports and drops those that have disappeared. Returns messages for the user.
-    pub(crate) fn poll(&mut self) -> Vec<String> {
+    /// Connects new ports and drops those that have disappeared. Returns messages for the user: what was done, or
+    /// what went wrong.
+    pub(crate) fn poll(&mut self) -> Vec<Result<String, String>> {
         if Instant::now() < self.scan_at {
             return vec![];
         }
@@ -80,14 +81,14 @@ impl MidiPorts {
         let mut news = vec![];
         let problem = self.scan(&mut news);
         if problem != self.problem {
-            news.extend(problem.clone());
+            news.extend(problem.clone().map(Err));
             self.problem = problem;
         }
         news
     }
 
     /// Connects and drops ports, and adds messages about them to `news`. Returns the present problem, if any.
-    fn scan(&mut self, news: &mut Vec<String>) -> Option<String> {
+    fn scan(&mut self, news: &mut Vec<Result<String, String>>) -> Option<String> {
         let input = match MidiInput::new(CLIENT) {
             Ok(input) => input,
             Err(error) => return Some(format!("no MIDI: the system has no sequencer ({error})")),
@@ -98,7 +99,7 @@ impl MidiPorts {
         self.connected.retain(|connected| {
             let stays = ports.iter().any(|(port, _)| port.id() == connected.id);
             if !stays {
-                news.push(format!("MIDI port ‘{}’ is gone; waiting for it to come back", connected.name));
+                news.push(Err(format!("MIDI port ‘{}’ is gone; waiting for it to come back", connected.name)));
             }
             stays
         });
@@ -117,7 +118,7 @@ impl MidiPorts {
             if new && self.wanted.wants(name) && !name.starts_with(CLIENT) {
                 match connect(port, name, self.sender.clone()) {
                     Some(connection) => {
-                        news.push(format!("MIDI port ‘{name}’ is connected"));
+                        news.push(Ok(format!("MIDI port ‘{name}’ is connected")));
                         self.connected.push(Connected { id, name: name.clone(), _connection: connection });
                     }
                     None => failed.push(format!("‘{name}’")),

@@ -19,7 +19,8 @@ pub(super) fn tell(params: &SprungParams, messages: impl IntoIterator<Item = Str
     messages.into_iter().for_each(|line| show(params, Ok(line)));
 }
 
-fn show(params: &SprungParams, message: Result<String, String>) {
+/// Shows a message on stderr and in the window: what was done, or what went wrong.
+pub(super) fn show(params: &SprungParams, message: Result<String, String>) {
     let (Ok(line) | Err(line)) = &message;
     print(&format!("sprung: {line}"));
     params.link().report(message);

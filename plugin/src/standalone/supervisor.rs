@@ -1,7 +1,7 @@
 //! Follows devices and ports, and saves the state, while the window is open.
 
 use super::chosen::{choice, plain, substitute, systems};
-use super::messages::{print, report, tell};
+use super::messages::{print, report, show, tell};
 use super::player::WindowPlayer;
 use super::store::Store;
 use crate::devices::{Chosen, Devices, Output};
@@ -81,7 +81,7 @@ impl Supervisor {
                         report(&self.params, news)
                     }
                     // Ports come and go, and the computer's keys play as well.
-                    tell(&self.params, midi.iter_mut().flat_map(MidiIn::poll).collect::<Vec<_>>());
+                    midi.iter_mut().flat_map(MidiIn::poll).for_each(|message| show(&self.params, message));
                 }
                 None if Instant::now() >= open_at => {
                     let open = |chosen: &Chosen| Opened::of(chosen, &self.params);
