@@ -106,6 +106,16 @@ pub(super) struct Window {
     line: StatusLine,
 }
 
+/// The page of the manual that explains what is shown.
+fn topic(over: Option<Over>, face: Face, pages: &Pages) -> &'static str {
+    match (over, face) {
+        (None, Face::Sound) => pages.topic(),
+        (None, Face::Motion) => "modulation",
+        (None, Face::Kit) => "kits",
+        _ => "window",
+    }
+}
+
 impl Window {
     /// A window that stores the user's sounds in a library; `None` if the system names no folder for user data.
     pub(super) fn new(params: Arc<SprungParams>, library: Option<Library>) -> Self {
@@ -296,7 +306,7 @@ impl Window {
             }
         }
         if reads {
-            self.manual.open(requests::topic(self.over, self.face, &self.pages));
+            self.manual.open(topic(self.over, self.face, &self.pages));
             self.over = Some(Over::Manual);
         }
         if ui.input(|input| input.key_pressed(Key::Escape)) {

@@ -2,27 +2,16 @@
 
 use super::header::{Face, Request};
 use super::variation::{Variation, VariationRequest};
-use super::{Over, Window};
+use super::{Over, Window, topic};
 use crate::editor::browser::Aim;
 use crate::editor::controls::files::load;
 use crate::editor::controls::history::{History, restore};
 use crate::editor::host::extent;
-use crate::editor::pages::Pages;
 use crate::params::SprungParams;
 use crate::state::View;
 use egui::Ui;
 use nice_plug_core::context::gui::GuiContext;
 use sprung::preset::{Playable, Preset};
-
-/// The page of the manual that explains what is shown.
-pub(super) fn topic(over: Option<Over>, face: Face, pages: &Pages) -> &'static str {
-    match (over, face) {
-        (None, Face::Sound) => pages.topic(),
-        (None, Face::Motion) => "modulation",
-        (None, Face::Kit) => "kits",
-        _ => "window",
-    }
-}
 
 impl Window {
     /// Loads the factory sound at this distance in the list.
