@@ -156,7 +156,8 @@ impl Picker {
         let edit = TextEdit::singleline(&mut self.path).id(Id::unique("path")).hint_text("a folder or file");
         let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
         name_field(&response, "Path of a folder or file", &self.path);
-        // When what is there is known, so that the first letter replaces it.
+        // When what is there is known, so that the first letter replaces it, and not if the user was quicker.
+        self.takes_focus &= !response.has_focus();
         if self.takes_focus && self.work.is_none() {
             self.takes_focus = false;
             let (field, text) = if saves { ("file name", &self.name) } else { ("path", &self.path) };
@@ -188,6 +189,7 @@ impl Picker {
             let edit = TextEdit::singleline(&mut self.name).id(Id::unique("file name")).hint_text("a name");
             let response = ui.put(rest, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
             name_field(&response, "Name of the file", &self.name);
+            self.takes_focus &= !response.has_focus();
             let text = if self.confirm.is_some() { "Replace" } else { "Save" };
             // What is shown is where it is saved.
             let is_there = self.work.is_none() && self.path == self.listing.folder.display().to_string();
