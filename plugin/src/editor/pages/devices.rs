@@ -77,11 +77,10 @@ pub(super) fn show(ui: &Ui, rect: Rect, controls: &mut Controls) {
     if let Some(rate) = rates.show(ui, row(1, 0), RATE, controls) {
         request.rate = rate;
     }
-    let own = match devices.block {
-        // That of the present blocks is not its own.
-        _ if chosen.buffer.is_some() => "256 frames, or the nearest".to_owned(),
-        0 => "256 frames, or the nearest".to_owned(),
-        frames => format!("the usual: {frames} frames"),
+    // The blocks of a size that was chosen are not the device's own.
+    let own = match (chosen.buffer, devices.block) {
+        (None, frames @ 1..) => format!("the usual: {frames} frames"),
+        _ => "256 frames, or the nearest".to_owned(),
     };
     let blocks = numbers(&own, &BLOCKS, chosen.buffer, "frames");
     if let Some(buffer) = blocks.show(ui, row(1, 1), BLOCK, controls) {

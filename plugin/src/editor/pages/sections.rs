@@ -222,7 +222,7 @@ mod tests {
         let context = egui::Context::default();
         let mut cut = Vec::new();
         let mut output = context.run_ui(egui::RawInput::default(), |ui| {
-            let width = |text: &str| text::width(ui.painter(), text, 0.82 * SMALL);
+            let width = |text: &str| text::least_width(ui.painter(), text, SMALL);
             for info in PAGES.into_iter().flat_map(sections).flatten() {
                 let name = short_name(info, &Guide::default());
                 let wide =

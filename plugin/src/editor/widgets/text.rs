@@ -6,7 +6,7 @@ use egui::text_edit::TextEditState;
 use egui::{Align2, Color32, Id, Key, Painter, Rect, Response, Ui, WidgetInfo};
 
 /// Factors for the size of text that would be too wide: the first with which it fits, or else the last.
-pub(crate) const SHRINK: [f32; 3] = [1.0, 0.9, 0.82];
+const SHRINK: [f32; 3] = [1.0, 0.9, 0.82];
 
 /// Draws a line of text into a rectangle, aligned within it. Returns its place.
 pub(crate) fn line(painter: &Painter, rect: Rect, align: Align2, text: &str, size: f32, colour: Color32) -> Rect {
@@ -24,6 +24,11 @@ pub(crate) fn line(painter: &Painter, rect: Rect, align: Align2, text: &str, siz
 /// The width of a line of text.
 pub(crate) fn width(painter: &Painter, text: &str, size: f32) -> f32 {
     painter.layout_no_wrap(text.to_owned(), font(size), Color32::WHITE).size().x
+}
+
+/// The least width in which [`line()`] draws a text whole.
+pub(crate) fn least_width(painter: &Painter, text: &str, size: f32) -> f32 {
+    width(painter, text, SHRINK[SHRINK.len() - 1] * size)
 }
 
 /// The first of some texts that fits into this room, or else the last.

@@ -209,16 +209,16 @@ fn view_menu(ui: &Ui, rect: Rect, header: &Header, controls: &mut Controls) -> O
         *controls.hint =
             Hint::new(format!("Menu   {} %", view.zoom), "Size and colours of the window, and the manual.");
     }
-    let fits = |zoom: &u32| extent::fitted(View { zoom: *zoom, ..view }, header.screen).zoom == *zoom;
-    let zooms = ZOOMS.into_iter().filter(fits);
-    let zooms = zooms.map(|zoom| (format!("{zoom} %"), zoom == view.zoom, Request::Zoom(zoom))).collect();
-    let themes = Theme::ALL.map(|theme| (theme.name().to_owned(), theme == view.theme, Request::Theme(theme)));
-    let pages =
-        [("Manual", Request::Manual), ("Devices", Request::Devices)].into_iter().take(1 + usize::from(is_alone));
-    let pages = pages.map(|(name, request)| (name.to_owned(), false, request)).collect();
     let mut request = None;
     Popup::menu(&response).show(|ui| {
         ui.set_min_width(120.0);
+        let fits = |zoom: &u32| extent::fitted(View { zoom: *zoom, ..view }, header.screen).zoom == *zoom;
+        let zooms = ZOOMS.into_iter().filter(fits);
+        let zooms = zooms.map(|zoom| (format!("{zoom} %"), zoom == view.zoom, Request::Zoom(zoom))).collect();
+        let themes = Theme::ALL.map(|theme| (theme.name().to_owned(), theme == view.theme, Request::Theme(theme)));
+        let pages =
+            [("Manual", Request::Manual), ("Devices", Request::Devices)].into_iter().take(1 + usize::from(is_alone));
+        let pages = pages.map(|(name, request)| (name.to_owned(), false, request)).collect();
         let groups: [Vec<(String, bool, Request)>; 3] = [zooms, themes.to_vec(), pages];
         for (place, group) in groups.into_iter().enumerate() {
             if place > 0 {

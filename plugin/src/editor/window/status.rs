@@ -2,7 +2,7 @@
 
 use crate::editor::controls::{Hint, Said};
 use crate::editor::theme::{Palette, SMALL};
-use crate::editor::widgets::text::{SHRINK, line, width};
+use crate::editor::widgets::text::{least_width, line, width};
 use egui::{Align2, Id, Popup, PopupAnchor, Rect, RectAlign, Role, Sense, Tooltip, Ui, WidgetInfo, pos2};
 use sprung::internals::display::Telemetry;
 use sprung::internals::text::counted;
@@ -117,7 +117,7 @@ impl StatusLine {
 
 /// The least width of a hint in the line, where its help may be drawn smaller.
 fn hinted(ui: &Ui, Hint { title, help }: &Hint) -> f32 {
-    width(ui.painter(), title, SMALL) + TITLE_GAP + width(ui.painter(), help, SMALL * SHRINK[SHRINK.len() - 1])
+    width(ui.painter(), title, SMALL) + TITLE_GAP + least_width(ui.painter(), help, SMALL)
 }
 
 /// Shows a hint above the line, whole, once the pointer has rested: beside the pointer it would hide what one compares.
