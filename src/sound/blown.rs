@@ -1,8 +1,9 @@
 //! Tubes that are blown: what of a patch makes the mouthpiece and the tube, and the pitch at which the two sound together.
 //!
 //! A valve has a mass, so its flow comes late, and the note sounds below the tube with a reed and above it with lips: by 5 to
-//! 60 cents, more at high keys; a jet is within some cents. A player's ear puts that right; here, each blown sound is played off the audio thread at every
-//! third key, by the bank and the mouthpiece that the voices use, and the tube is tuned against what was heard.
+//! 60 cents, more at high keys; a jet is within some cents. A player's ear puts that right; here, each blown sound is played
+//! off the audio thread at every third key, by the bank and the mouthpiece that the voices use, and the tube is tuned against
+//! what was heard.
 
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::exciter::{Breath, JetLaw, Mouthpiece, MouthpieceLaw, Player, ValveLaw};
@@ -37,8 +38,8 @@ const HIGHEST_SHARE: f64 = 0.45;
 /// pressures fall in a blown tube: so levels are near the amplitudes that are heard, as they are under any other exciter.
 const HEARD: f64 = 5.0 / 3.0;
 
-/// How much more is heard of a speed at the edge of a jet than of a pressure behind a valve: a jet's air reaches a quarter of what a reed's
-/// pressure does, and a knob's dB should mean about the same for both.
+/// How much more is heard of a speed at the edge of a jet than of a pressure behind a valve: a jet's air reaches a quarter of
+/// what a reed's pressure does, and a knob's dB should mean about the same for both.
 const SPEED: f64 = 4.0;
 
 /// Modes softer than this, against the loudest, count as this loud: what gives a pressure cannot be infinitely soft.
@@ -212,13 +213,13 @@ fn cents_off(patch: &Patch, key: f64, cents: f64) -> Option<f64> {
     speaks.then(|| 1200.0 * libm::log2(frequency / wanted))
 }
 
-/// A note speaks if the pressure in its tube reaches this, or its speed a quarter of it; and on its own mode if its fundamental has this
-/// share of the peak: of an overblown note some −80 dB are left.
+/// A note speaks if the pressure in its tube reaches this, or its speed a quarter of it; and on its own mode if its fundamental
+/// has this share of the peak: of an overblown note some −80 dB are left.
 const SPEAKS: f64 = 0.05;
 const FUNDAMENTAL: f64 = 0.03;
 
-/// The frequency in Hz of a steady tone near `guess`, and its amplitude: from how far the phase of its fundamental advances between two windows,
-/// farther and farther apart, so that each distance tells the next one’s whole periods.
+/// The frequency in Hz of a steady tone near `guess`, and its amplitude: from how far the phase of its fundamental advances
+/// between two windows, farther and farther apart, so that each distance tells the next one’s whole periods.
 fn frequency_of(heard: &[f32], window: usize, guess: f64) -> (f64, f64) {
     let (mut frequency, mut amplitude) = (guess, 0.0);
     for apart in [window / 64, window / 16, window / 4, window] {

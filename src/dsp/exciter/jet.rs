@@ -4,9 +4,9 @@ use super::breath::Breath;
 use libm::{exp, sqrt, sqrtf};
 use std::f64::consts::{SQRT_2, TAU};
 
-/// How far the jet is bent at the edge by air that moves as fast as the jet, as a multiple of its half width. The waves of a jet that is
-/// 1 mm thick grow by `e^1.6` on 4 mm from the lips to the edge, and its half width is 0.4 mm: that would be twelve. Nine has the
-/// loudness of partials that recorded flutes have.
+/// How far the jet is bent at the edge by air that moves as fast as the jet, as a multiple of its half width. The waves of a
+/// jet that is 1 mm thick grow by `e^1.6` on 4 mm from the lips to the edge, and its half width is 0.4 mm: that would be
+/// twelve. Nine has the loudness of partials that recorded flutes have.
 const GROWTH: f32 = 9.0;
 
 /// How far the jet aims beside the edge, as a multiple of its half width. Without, there would be no even harmonics.
@@ -45,12 +45,13 @@ impl JetLaw {
 /// A tube that is open at its mouth has speeds there as a tube with a reed has pressures, so speed and pressure change places
 /// against [`Valve`]: its modes' sum is the speed `v` of the air at the edge, and they get a pressure.
 ///
-/// The speed bends the jet where it leaves the lips. The bend grows as it travels, and comes to the edge late: four lags, each a
-/// sixteenth of a turn late at [`JetLaw::frequency`], are its travel, and they take from fast bends as a jet does, which is too
-/// wide to follow them. A jet of mouth pressure `γ` has the speed `√γ`, so it arrives bent by `η = 9 v/√γ − 0.3` half widths,
-/// and `Q = γ (1 + η/√(1 + η²))` enters the tube. As that changes it pushes air before it, and turbulence by the share `g` pushes too:
-/// the pressure is `D = 0.016 β (dQ/dt + 6 γ g)`, with time in periods of the note. (Verge, Hirschberg and Caussé, "Sound production in recorderlike instruments. II", JASA 101, 1997; Auvray, Fabre
-/// and Lagrée, "Regime change and oscillation thresholds in recorder-like instruments", JASA 131, 2012.)
+/// The speed bends the jet where it leaves the lips. The bend grows as it travels, and comes to the edge late: four lags, each
+/// a sixteenth of a turn late at [`JetLaw::frequency`], are its travel, and they take from fast bends as a jet does, which is
+/// too wide to follow them. A jet of mouth pressure `γ` has the speed `√γ`, so it arrives bent by `η = 9 v/√γ − 0.3` half
+/// widths, and `Q = γ (1 + η/√(1 + η²))` enters the tube. As that changes it pushes air before it, and turbulence by the share
+/// `g` pushes too: the pressure is `D = 0.016 β (dQ/dt + 6 γ g)`, with time in periods of the note. (Verge, Hirschberg and
+/// Caussé, "Sound production in recorderlike instruments. II", JASA 101, 1997; Auvray, Fabre and Lagrée, "Regime change and
+/// oscillation thresholds in recorder-like instruments", JASA 131, 2012.)
 ///
 /// Eddies at the edge take the pressure `2 v̄ |v̄|`, where `v̄ = v + S V/2` is the mean speed in the frame and `V = q (D − 2 v̄ |v̄|)`
 /// what mode `m` gets `κ_m` times, as of a valve's flow. This makes one quadratic equation for `|v̄|` with one root that is not
@@ -109,8 +110,8 @@ mod tests {
     use super::*;
     use crate::dsp::random::{key, uniform};
 
-    /// In any frame, for any breath that comes and goes, any tube, rate and speed of the air, the tube gets no more than the pressure of
-    /// the jet can give; and nothing once the breath is gone.
+    /// In any frame, for any breath that comes and goes, any tube, rate and speed of the air, the tube gets no more than the
+    /// pressure of the jet can give; and nothing once the breath is gone.
     #[test]
     fn a_jet_gives_no_more_than_its_pressure_can() {
         let mut gained = 0;
