@@ -45,7 +45,7 @@ pub struct Sound {
 impl Sound {
     /// The sound of a patch, in the tuning of the whole instrument. Allocates. If the patch has a table of modes for each
     /// key, these are made here, which can take a second; clones of the patch share them. If it is blown, it is tuned here, which
-    /// takes up to a quarter of a second.
+    /// takes up to a tenth of a second.
     pub fn new(patch: Patch) -> Self {
         patch.modes.make_tables();
         let correction = blown::Correction::of(&patch);
