@@ -95,13 +95,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
     if let Some(song) = &mut song {
         settings.tuning.overrule(song, &mut warn);
     }
+    let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
+    let found = Found::find(&choice)?;
     // Keyboards may select any program at any time.
     let sounds = settings.load(song.as_mut(), true, &mut inputs)?;
     if let Some(song) = &song {
         settings.warn(song, &sounds, &mut warn);
     }
-    let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
-    let found = Found::find(&choice)?;
     let (tap, recording) = match &record {
         Some(target) => {
             let output = Output::create(target, args.force, &inputs)?;

@@ -78,6 +78,16 @@ impl SoundRequest {
     /// # Errors
     /// [`Error::Io`] and [`Error::Format`] for files that cannot be read, [`Error::Value`] for unknown names.
     pub fn load(&self, song: Option<&mut Song>, is_live: bool, inputs: &mut Inputs) -> Result<Sounds> {
+        // What is named comes first, so that a wrong name is told before a bank is loaded.
+        let own = self.preset.as_deref().map(|name| playable(name, inputs)).transpose()?.map(|own| self.kit(own));
+        let mut channels = Vec::with_capacity(self.channels.len() + 1);
+        for (channel, name) in &self.channels {
+            if channels.iter().any(|(taken, _)| taken == channel) {
+                let message = format!("channel {} is there twice: expected each channel once", channel + 1);
+                return Err(Error::value("--channel", message));
+            }
+            channels.push((*channel, self.kit(playable(OsStr::new(name), inputs)?)));
+        }
         let list = if song.is_some() || is_live { programs::list(&self.programs, inputs)? } else { None };
         let has_drums = song.as_ref().is_none_or(|song| song.events.iter().any(|event| event.channel == DRUM_CHANNEL));
         let (is_free, has_song) = (self.preset.is_none(), song.is_some());
@@ -101,18 +111,10 @@ impl SoundRequest {
             Some(list) => programs::kits(list, wanted, |playable| self.kit(playable), inputs)?,
         };
         let program = |number: u8| made.get(usize::from(number)).cloned().flatten();
-        let kit = match program(0).filter(|_| starts_with_first) {
-            Some(first) => first,
-            None => self.kit(playable(self.preset.as_deref().unwrap_or(OsStr::new("init")), inputs)?),
+        let kit = match own.or_else(|| program(0).filter(|_| starts_with_first)) {
+            Some(kit) => kit,
+            None => self.kit(playable(OsStr::new("init"), inputs)?),
         };
-        let mut channels = Vec::with_capacity(self.channels.len() + 1);
-        for (channel, name) in &self.channels {
-            if channels.iter().any(|(taken, _)| taken == channel) {
-                let message = format!("channel {} is there twice: expected each channel once", channel + 1);
-                return Err(Error::value("--channel", message));
-            }
-            channels.push((*channel, self.kit(playable(OsStr::new(name), inputs)?)));
-        }
         channels.extend(program(MELODIC).filter(|_| starts_with_drums).map(|drums| (DRUM_CHANNEL, drums)));
         let programs = made.into_iter().map(|made| made.unwrap_or_else(|| kit.clone())).collect();
         // If the user sets the space, every channel has its own, and the shared one is not used.

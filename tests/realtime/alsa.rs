@@ -194,7 +194,7 @@ fn what_cannot_be_played_on_says_what_can() {
         ("play --rate 700", 2, "700 is out of range: expected 1000 to 768000 Hz"),
         ("play --record /dev/null --device some", 1, "--record: /dev/null is a pipe or device: expected a file"),
         ("play none.mid", 1, "none.mid: No such file"),
-        ("play --preset kcik", 1, "the nearest is ‘Kick’"),
+        ("play --device some --preset kcik", 1, "the nearest is ‘Kick’"),
     ] {
         let output = sprung(arguments).env("ALSA_CONFIG_PATH", sandbox.path("asound.conf")).output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
