@@ -98,8 +98,8 @@ fn are_in_tune(step: usize) {
 }
 
 #[test]
-fn winds_are_in_tune_at_every_seventh_key() {
-    are_in_tune(7);
+fn winds_are_in_tune_at_every_thirteenth_key() {
+    are_in_tune(13);
 }
 
 #[test]

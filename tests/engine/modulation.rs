@@ -380,17 +380,21 @@ fn every_quantity_can_be_moved_and_is_heard() {
     ];
     // Without audio input, its level is not audible.
     let heard = PARAMS.iter().filter(|info| info.is_modulatable() && ![Route16, InputLevel].contains(&info.param));
+    let frames = 40_000;
+    let plain = [0, 1, 2, 3, 4].map(|form| {
+        let patch = busy(form).with(Macro1, 100.0).with(Route16, -25.0);
+        let sound = render(&patch, 0, &events, frames);
+        (patch, sound)
+    });
     let deaf = heard.filter(|info| {
-        (0..5).all(|form| {
-            let plain = busy(form).with(Macro1, 100.0).with(Route16, -25.0);
-            let mut moved = plain.clone();
+        plain.iter().all(|(patch, sound)| {
+            let mut moved = patch.clone();
             let route =
                 Route { source: Source::Macro1, destination: info.param, response: Response::Linear, scale: None };
             moved.routes.set(15, Some(route));
-            let frames = 40_000;
             // Moves the parameter down, or up if it is at its minimum.
-            render(&plain, 0, &events, frames) == render(&moved, 0, &events, frames)
-                && render(&plain, 0, &events, frames) == render(&moved.with(Route16, 25.0), 0, &events, frames)
+            *sound == render(&moved, 0, &events, frames)
+                && *sound == render(&moved.with(Route16, 25.0), 0, &events, frames)
         })
     });
     let deaf: Vec<_> = deaf.map(|info| info.id).collect();
