@@ -9,7 +9,7 @@ use crate::editor::keyboard::grid::velocity;
 use crate::editor::keyboard::held_key::HeldKey;
 use crate::editor::theme::{RADIUS, SMALL, TEXT};
 use crate::editor::widgets::carried;
-use crate::editor::widgets::text::{fitting, line};
+use crate::editor::widgets::text::{fitting, least_width, line, paragraph};
 use crate::link::Link;
 use crate::loaded::Loaded;
 use egui::{Align2, DragAndDrop, Id, Key, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
@@ -204,8 +204,14 @@ impl Face<'_> {
             return;
         };
         let bar = inside.with_min_y(inside.bottom() - 3.0);
-        let named = Rect::from_min_max(pos2(inside.left(), bar.top() - 17.0), pos2(inside.right(), bar.top() - 1.0));
-        line(painter, named, Align2::LEFT_CENTER, self.name, TEXT, text);
+        let is_long = least_width(painter, self.name, TEXT) > inside.width();
+        let height = if is_long { 28.0 } else { 16.0 };
+        let named =
+            Rect::from_min_max(pos2(inside.left(), bar.top() - 1.0 - height), pos2(inside.right(), bar.top() - 1.0));
+        match is_long {
+            true => _ = paragraph(painter, named, self.name, SMALL, text),
+            false => _ = line(painter, named, Align2::LEFT_CENTER, self.name, TEXT, text),
+        }
         let picture = Rect::from_min_max(top.left_bottom(), named.right_top()).shrink(2.0);
         if let Some(figure) = self.figure.filter(|_| picture.height() >= 10.0) {
             let side = vec2(picture.width().min(2.0 * picture.height()), picture.height());
