@@ -13,7 +13,8 @@ use crate::error::Result;
 const NOISE_DB: f64 = -10.0;
 /// Residual of the modes in dB below which they tell where the sound is damped.
 const TELLS_DAMPER_DB: f64 = -25.0;
-/// Residual of the modes in dB above which the sound may be moved by oscillators.
+/// Residual of the modes in dB above which the sound may be moved by oscillators. If these leave less of it, nothing else moves or
+/// excites it: wrong sweeps and noise would take most of the time of a fit.
 const SWAYS_DB: f64 = -20.0;
 /// Share of a sound after which modes that noise has excited ring freely.
 const LATE: f64 = 0.2;
@@ -31,22 +32,22 @@ const AFTER_ECHO: f64 = 0.5;
 /// * Its modes.
 /// * If it is held, or rises slowly and its modes do not explain it: the modes without its drift. Of a held sound they replace the first
 ///   ones if they explain much more.
+/// * If its modes leave much of it: the modes without the movement of oscillators. If these explain it, the next four are left out.
 /// * Unless its modes explain it: those of each sweep that explains more.
 /// * If its modes explain little: the row of bursts with which it begins, noise that goes on for as long as the sound, and modes that
 ///   noise excites, found after the noise is over.
 /// * Unless its modes explain it, and if it has echoes: the tones that stay after these.
-/// * If its modes leave much of it: the modes without the movement of oscillators.
 /// * If it rises slowly: modes found after the rise.
 pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
     // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
-    let [of_still, of_drift, of_search, first, second, of_noise, of_echoes, of_modulated, of_rest] = [
+    let [of_still, of_drift, of_modulated, of_search, first, second, of_noise, of_echoes, of_rest] = [
         [0.0, 0.25],
         [0.25, 0.45],
         [0.45, 0.5],
-        [0.5, 0.6],
-        [0.6, 0.7],
-        [0.7, 0.8],
-        [0.8, 0.85],
+        [0.5, 0.55],
+        [0.55, 0.65],
+        [0.65, 0.75],
+        [0.75, 0.85],
         [0.85, 0.9],
         [0.9, 1.0],
     ];
@@ -75,7 +76,10 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
             found.extend(held);
         }
     }
-    if !is_explained && !drifts {
+    let modulated =
+        if still > SWAYS_DB { modulated(take, most, &mut within(of_modulated, tell))? } else { Vec::new() };
+    let sways = modulated.iter().any(|found| residual_db(found) < SWAYS_DB);
+    if !is_explained && !drifts && !sways {
         let sweeps = sweep::find(&take.mean, &mut || tell(of_search[0]))?;
         let mut swept = Vec::new();
         for (sweep, part) in sweeps.into_iter().zip([first, second]) {
@@ -87,7 +91,7 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
         found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
     }
     let strike = found[0].1.clone();
-    if still > NOISE_DB && !drifts {
+    if still > NOISE_DB && !drifts && !sways {
         let empty = || start::from(take, None, &Source { struck: false, ..all }, false);
         found.extend(bursts::train(&take.mean).map(|noise| (Draft { noise, ..empty() }, strike.clone())));
         found.push((noise::lasting(take, most, empty()), strike.clone()));
@@ -95,15 +99,13 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
         let (driven, _) = analysed(take, late, of_noise, tell)?;
         found.push((driven, strike.clone()));
     }
-    let row = if is_explained { None } else { bursts::echoes(&take.mean) };
+    let row = if is_explained || sways { None } else { bursts::echoes(&take.mean) };
     if let Some(row) = row {
         let echoed = echoed(take, row, most, &mut within(of_echoes, tell))?;
         found.extend(echoed.into_iter().map(|draft| (draft, strike.clone())));
     }
-    if still > SWAYS_DB {
-        found.extend(modulated(take, most, &mut within(of_modulated, tell))?);
-    }
-    if take.rise > SLOW {
+    found.extend(modulated);
+    if take.rise > SLOW && !sways {
         let swept = found[0].0.sweep;
         let (rung, _) = analysed(take, Source { late: take.rise, swept, ..all }, of_rest, tell)?;
         found.push((rung, strike));
