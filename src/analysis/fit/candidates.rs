@@ -13,8 +13,8 @@ use crate::error::Result;
 const NOISE_DB: f64 = -10.0;
 /// Residual of the modes in dB below which they tell where the sound is damped.
 const TELLS_DAMPER_DB: f64 = -25.0;
-/// Residual of the modes in dB above which the sound may be moved by oscillators. If these leave less of it, nothing else moves or
-/// excites it: wrong sweeps and noise would take most of the time of a fit.
+/// Residual of the modes in dB above which the sound may be moved by oscillators. If these leave less of a held sound that modes alone
+/// hardly explain, nothing else moves or excites it: wrong sweeps and noise would take most of the time of a fit.
 const SWAYS_DB: f64 = -20.0;
 /// Share of a sound after which modes that noise has excited ring freely.
 const LATE: f64 = 0.2;
@@ -32,7 +32,8 @@ const AFTER_ECHO: f64 = 0.5;
 /// * Its modes.
 /// * If it is held, or rises slowly and its modes do not explain it: the modes without its drift. Of a held sound they replace the first
 ///   ones if they explain much more.
-/// * If its modes leave much of it: the modes without the movement of oscillators. If these explain it, the next four are left out.
+/// * If its modes leave much of it: the modes without the movement of oscillators. If these explain a held sound that modes
+///   alone do not, the next four are left out.
 /// * Unless its modes explain it: those of each sweep that explains more.
 /// * If its modes explain little: the row of bursts with which it begins, noise that goes on for as long as the sound, and modes that
 ///   noise excites, found after the noise is over.
@@ -76,9 +77,9 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
             found.extend(held);
         }
     }
-    let modulated =
-        if still > SWAYS_DB { modulated(take, most, &mut within(of_modulated, tell))? } else { Vec::new() };
-    let sways = modulated.iter().any(|found| residual_db(found) < SWAYS_DB);
+    let modulated = if still > SWAYS_DB { modulated(take, most, &mut within(of_modulated, tell))? } else { Vec::new() };
+    // As of a drift: the residual of what decays tells little.
+    let sways = take.is_held && still > NOISE_DB && modulated.iter().any(|found| residual_db(found) < SWAYS_DB);
     if !is_explained && !drifts && !sways {
         let sweeps = sweep::find(&take.mean, &mut || tell(of_search[0]))?;
         let mut swept = Vec::new();
