@@ -47,6 +47,28 @@ impl Stage {
     }
 }
 
+/// All of a drag but its end comes in one pass.
+#[test]
+fn a_quick_drag_takes_what_was_pressed() {
+    let mut stage = at("Marimba", SIZE, Theme::Dark);
+    let [from, other] = ["Source lfo1", "Source envelope1"].map(|name| stage.middle(Role::Button, name));
+    let before = stage.routes();
+    stage.harness.event(Event::PointerMoved(from));
+    stage.harness.run_steps(2);
+    let press =
+        Event::PointerButton { pos: from, button: PointerButton::Primary, pressed: true, modifiers: Modifiers::NONE };
+    stage.harness.input_mut().events.extend([press, Event::PointerMoved(other)]);
+    stage.harness.run_steps(3);
+    stage.harness.event(Event::PointerMoved(stage.middle(Role::Tab, "Play")));
+    stage.harness.run_steps(30);
+    let to = stage.middle(Role::Slider, "Decay");
+    stage.button_at(to, false);
+    stage.harness.run_steps(2);
+    let new = |(place, route): &(usize, Route)| before.get(*place) != Some(*route);
+    let made: Vec<_> = stage.routes().iter().filter(new).map(|(_, route)| (route.source, route.destination)).collect();
+    assert_eq!(made, [(Source::Lfo1, Param::Decay)]);
+}
+
 #[test]
 fn no_route_is_cut_off_at_the_side() {
     let stage = at("Church Bell", LEAST_SIZE, Theme::Dark);

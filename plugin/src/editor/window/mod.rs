@@ -3,6 +3,7 @@
 mod header;
 mod host;
 mod meter;
+mod presses;
 mod reach;
 mod requests;
 mod status;
@@ -38,6 +39,7 @@ use header::{Header, Request};
 use meter::Meter;
 use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
+use presses::Presses;
 use reach::Reach;
 use sprung::internals::library::Library;
 use status::{Load, StatusLine};
@@ -182,6 +184,7 @@ impl Window {
         let view = params.view();
         if self.applied.is_none() {
             install_fonts(ui.ctx());
+            ui.ctx().add_plugin(Presses::default());
             // Its keys would change the zoom and not the state.
             ui.ctx().options_mut(|options| options.zoom_with_keyboard = false);
         }
