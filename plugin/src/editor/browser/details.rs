@@ -63,6 +63,8 @@ const ABOUT: f32 = 52.0;
 pub(super) struct Details {
     /// The name to save under.
     pub(super) name: String,
+    /// The sound's name that was in the field at first.
+    of: String,
     /// A name whose file is replaced if the user saves again.
     confirm: Option<String>,
     /// Author and tags to save with, once the user is about to save.
@@ -74,7 +76,7 @@ pub(super) struct Details {
 impl Details {
     /// Resets the field to the name of the loaded sound.
     pub(super) fn open(&mut self, name: &str) {
-        *self = Self { name: name.to_owned(), ..Self::default() };
+        *self = Self { name: name.to_owned(), of: name.to_owned(), ..Self::default() };
     }
 
     /// Gives the field the focus when it is shown next.
@@ -94,7 +96,12 @@ impl Details {
     ) -> Option<Outcome> {
         let palette = controls.palette;
         let title = rect.with_max_y(rect.top() + TITLE_HEIGHT + 2.0);
-        line(ui.painter(), title, Align2::LEFT_CENTER, &controls.params.name(), TEXT + 3.0, palette.text);
+        let name = controls.params.name();
+        line(ui.painter(), title, Align2::LEFT_CENTER, &name, TEXT + 3.0, palette.text);
+        // Undo, or a host, may have brought another sound back.
+        if self.of != name {
+            self.open(&name);
+        }
         let mut top = title.bottom() + 4.0;
         if let Some(sound) = shown {
             let [keys, macros] = match &sound.playable {

@@ -7,10 +7,11 @@ mod things;
 
 use crate::editor::body::offer::offer_alone;
 use crate::editor::body::view::{BodyView, velocity};
-use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
+use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::routes::Ring;
+use crate::editor::routes::list::effects;
 use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, RADIUS, SMALL, TITLE_HEIGHT};
 use crate::editor::widgets::text::line;
 use crate::editor::widgets::{knob, outline};
@@ -163,6 +164,11 @@ fn knobs(ui: &mut Ui, rect: Rect, title: f32, shown: &Shown, controls: &mut Cont
                 let cell = Rect::from_min_size(corner + vec2(0.0, title), vec2(width, CELL_HEIGHT - 4.0));
                 let ring = Ring::of(info, &shown.patch().routes, controls);
                 knob::show(ui, cell.shrink2(vec2(1.0, 0.0)), info, &name, &ring, controls);
+                if ui.rect_contains_pointer(cell)
+                    && let Some(effects) = effects(info, shown.patch(), controls)
+                {
+                    *controls.hint = Hint::new(format!("{name} {}", controls.text(info)), format!("It {effects}."));
+                }
                 corner.x += width;
             }
             corner.x += 2.0 * GAP;

@@ -5,6 +5,7 @@ use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{GAP, PADDING, RADIUS, SMALL, TEXT, TITLE_HEIGHT};
 use crate::editor::widgets::{knob, outline, text};
 use egui::{Align2, Rect, ScrollArea, Sense, Ui, UiBuilder, vec2};
+use sprung::params::ParamInfo;
 use sprung::patch::Patch;
 use sprung::patch::routes::{MAX_ROUTES, Response, Route, Source, amount_param};
 use sprung::preset::Guide;
@@ -26,6 +27,17 @@ fn verb(route: &Route, amount: f32) -> &'static str {
         _ if amount < 0.0 => "lowers",
         _ => "raises",
     }
+}
+
+/// What a macro does, such as `raises Decay, lowers Tilt`; none for another parameter, or where it has no routes.
+pub(in crate::editor) fn effects(info: &ParamInfo, patch: &Patch, controls: &Controls) -> Option<String> {
+    let own = patch.routes.iter().filter(|(_, route)| route.source.id() == info.id);
+    let effect = |(place, route): (usize, Route)| {
+        let amount = controls.value(amount_param(place).info());
+        format!("{} {}", verb(&route, amount), route.destination.info().name)
+    };
+    let all: Vec<String> = own.map(effect).collect();
+    (!all.is_empty()).then(|| all.join(", "))
 }
 
 /// What stands behind the destination: the second source, and the curve.
@@ -94,9 +106,11 @@ pub(in crate::editor) fn show(
                 }
                 Some(route) => {
                     let info = amount_param(place).info();
+                    // The knobs of a kit say how far it moves its sounds' values, and not these values.
+                    let amount = if is_editable { controls.value(info) } else { patch.get(info.param) };
                     let words = [
                         (source_name(route.source, guide), palette.modulation),
-                        (format!(" {} ", verb(&route, controls.value(info))), palette.muted),
+                        (format!(" {} ", verb(&route, amount)), palette.muted),
                         (route.destination.info().name.to_owned(), palette.text),
                         (details(&route, guide), palette.muted),
                     ];
@@ -104,8 +118,13 @@ pub(in crate::editor) fn show(
                     for (word, colour) in words {
                         left = line(ui, sentence.with_min_x(left.min(sentence.right())), &word, TEXT, colour);
                     }
-                    let ring = Ring::of(info, &patch.routes, controls);
-                    knob::show_bar(ui, [bar, value], info, &ring, controls);
+                    if is_editable {
+                        let ring = Ring::of(info, &patch.routes, controls);
+                        knob::show_bar(ui, [bar, value], info, &ring, controls);
+                    } else {
+                        let text = info.format(amount);
+                        text::line(ui.painter(), value, Align2::RIGHT_CENTER, &text, SMALL, palette.muted);
+                    }
                 }
             }
         }

@@ -51,6 +51,15 @@ fn sounds_are_found_by_words_tried_by_arrows_and_undone_by_name() {
     assert!(matches!(touches.pop(), Ok(Touch::Down { .. })), "it is heard");
     stage.harness.run_steps(60);
     assert!(matches!(touches.pop(), Ok(Touch::Up { .. })), "and let go");
+    let to_save = |stage: &Stage| {
+        let field = stage.harness.get_by_role_and_label(Role::TextInput, "Name to save under");
+        field.accesskit_node().value().unwrap()
+    };
+    assert_eq!(to_save(&stage), "Church Bell");
+    stage.button("Undo");
+    assert_eq!(to_save(&stage), "Kick", "that of the sound that has come back");
+    stage.harness.get_by_label_contains("taken back: Church Bell");
+    stage.button("Redo");
     stage.harness.key_press(Key::Escape);
     stage.harness.run_steps(2);
     assert!(stage.harness.query_by_label("Search").is_none());

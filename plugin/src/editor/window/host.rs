@@ -56,14 +56,16 @@ impl NiceEguiApp for Window {
             (logical.round() as u32).clamp(least, most)
         };
         let size = [side(size.physical.width), side(size.physical.height)];
-        self.params.set_view(|view: &mut View| view.size = size);
+        // A window that is smaller only because of its zoom gets its size back with another zoom.
+        let is_cut =
+            |view: &View| extent::fitted(*view, self.screen).size.iter().zip(size).all(|(a, b)| a.abs_diff(b) < 2);
+        self.params.set_view(|view: &mut View| view.size = if is_cut(view) { view.size } else { size });
     }
 
     fn zoom_factor_changed(&mut self, zoom: f32) {
         self.zoom = zoom;
-        let view = self.params.view();
-        let fitted = extent::fitted(view, self.screen);
-        if let Some(context) = self.context.as_ref().filter(|_| fitted != view) {
+        let fitted = extent::fitted(self.params.view(), self.screen);
+        if let Some(context) = &self.context {
             let [width, height] = fitted.size.map(|side| side as f32);
             context.send_viewport_cmd(ViewportCommand::InnerSize(vec2(width, height)));
             context.request_repaint();

@@ -41,9 +41,14 @@ impl Window {
     }
 
     /// Undoes or redoes a step, which may exchange the two versions.
-    fn go_back(&mut self, go: impl FnOnce(&mut History, &SprungParams, &GuiContext) -> bool, host: &GuiContext) {
+    fn go_back(
+        &mut self,
+        go: impl FnOnce(&mut History, &SprungParams, &GuiContext) -> bool,
+        host: &GuiContext,
+        told: Option<String>,
+    ) {
         // What was said of the step is no longer so.
-        self.news = Some(Ok(String::new()));
+        self.news = told.map(Ok);
         let now = (self.params.state(), self.history.is_changed());
         if go(&mut self.history, &self.params, host) {
             self.other = Some(now);
@@ -60,8 +65,14 @@ impl Window {
                 self.news = Some(Ok(String::new()));
                 self.browser.open(&self.params.name(), if request == Request::Save { Aim::Save } else { Aim::Find });
             }
-            Request::Undo => self.go_back(History::undo, host),
-            Request::Redo => self.go_back(History::redo, host),
+            Request::Undo => {
+                let told = self.history.undo_name().map(|name| format!("taken back: {name}"));
+                self.go_back(History::undo, host, told);
+            }
+            Request::Redo => {
+                let told = self.history.redo_name().map(|name| format!("done again: {name}"));
+                self.go_back(History::redo, host, told);
+            }
             Request::Zoom(zoom) => {
                 self.params.set_view(|view| view.zoom = extent::fitted(View { zoom, ..*view }, self.screen).zoom);
                 ui.ctx().set_zoom_factor(extent::factor(self.params.view()));
