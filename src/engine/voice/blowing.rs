@@ -36,6 +36,7 @@ pub(super) struct Blowing {
     reached: f64,
     /// Whether the modes have their contacts.
     is_placed: bool,
+    has_blown: bool,
 }
 
 /// A note as breath has it: its frequency with all bends and the sample rate in Hz, and the seconds since its strike.
@@ -56,6 +57,7 @@ impl Blowing {
         pressure: Line::ZERO,
         reached: 0.0,
         is_placed: false,
+        has_blown: false,
     };
 
     /// Reads the breath's parameters at a strike. `key` is the strike's stream of random numbers, `count` that of unison voices.
@@ -74,6 +76,12 @@ impl Blowing {
     /// Whether there is breath in the tube, or about to be.
     pub(super) fn is_on(&self) -> bool {
         !self.pressure.is_zero()
+    }
+
+    /// Whether there has been breath since the voice began. The bloom keeps the energy that is heard and the mouthpiece that of the
+    /// swing, so in turn they would let both grow without bound: a body that was blown does not bloom.
+    pub(super) fn has_blown(&self) -> bool {
+        self.has_blown
     }
 
     /// Whether breath drives a held note, or would as soon as it has a pressure.
@@ -96,6 +104,7 @@ impl Blowing {
         if wanted == 0.0 && !self.is_on() {
             return;
         }
+        self.has_blown = true;
         let Blown { frequency, sample_rate, age } = note();
         if !self.is_placed {
             let Some(values) = values else {

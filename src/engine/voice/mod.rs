@@ -314,7 +314,7 @@ impl SynthVoice {
 
     /// Whether energy moves to higher modes.
     fn blooms(&self) -> bool {
-        Bloom::acts(&self.controls, self.energy.now() / self.strike.full_energy())
+        !self.strike.blowing.has_blown() && Bloom::acts(&self.controls, self.energy.now() / self.strike.full_energy())
     }
 
     /// Frames until the voice is over if no event comes, `to_tick` frames before the next control tick: see
