@@ -4,8 +4,8 @@
 //! resonator's control ticks, so a song that changes the size has the same bits everywhere. While sound passes, a
 //! retuned body continues at its new pitch, and its work is divided into the ticks of a block; another body starts when
 //! the previous one has faded out, after 20 ms: it is loaded at a tick and laid out in its first block, before it sounds. (Laid
-//! out at once, it took half of the time of a host's block of 64 frames.) One that was set in silence is laid out slice by slice in
-//! the silence that follows; what the first sound finds undone is done at once, since that must be heard from its first frame on.
+//! out at once, it took half of the time of a host's block of 64 frames. One that was set in silence still is, at the first sound,
+//! since that must be heard from its first frame on.)
 //!
 //! Rejected: making bodies with the sound and handing them over. A sound does not know the sample rate, each channel
 //! would need a state to be handed over with it, and a knob would need a thread that follows it. The price: a body has

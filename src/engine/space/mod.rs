@@ -262,10 +262,6 @@ impl Space {
         }
         self.tremolo.skip(frames);
         self.tone.skip(frames);
-        if let Some(resonant) = &mut self.resonant {
-            resonant.strings.skip(frames);
-            resonant.reverb.skip(frames);
-        }
     }
 }
 

@@ -27,9 +27,6 @@ use layout::Tuning;
 use libm::{exp2, floor, log2};
 use tail::Tail;
 
-/// Slices in which masses at rest are prepared: some 4 µs each for 13,000, since all channels of an ensemble may be at it.
-const SLICES: usize = 128;
-
 /// Smallest and largest pitch ratio of a body to its reference pitch.
 const PITCHES: [f64; 2] = [1.0 / 64.0, 64.0];
 
@@ -51,8 +48,6 @@ pub struct Resonator {
     /// The coefficients that are wanted, and those that the masses have or are given in this block.
     wanted: Tuning,
     given: Option<Tuning>,
-    /// While masses at rest are prepared slice by slice: for which coefficients, and the number of slices that are done.
-    prepared: Option<(Tuning, usize)>,
     /// Whether the masses are given other coefficients in this block, and whether this happened in the block before: then the
     /// output fades from the former response to the present one.
     is_changing: bool,
@@ -97,7 +92,6 @@ impl Resonator {
             decay,
             wanted: Tuning::new(1.0, decay, sample_rate, tail.modes()),
             given: None,
-            prepared: None,
             is_changing: false,
             fades: false,
             gains: [0.0; 2],
@@ -119,7 +113,7 @@ impl Resonator {
         self.reset();
         self.tail.load(modes, self.sample_rate);
         self.bands.load(modes);
-        (self.given, self.prepared) = (None, None);
+        self.given = None;
         self.change();
     }
 
@@ -142,43 +136,23 @@ impl Resonator {
         self.bands.change(self.wanted.shift, self.wanted.heard, self.decay.log_rates(self.sample_rate));
     }
 
-    /// Gives all masses the wanted coefficients at once, if they have others: what [`Resonator::prepare_slice`] has left of it. For
-    /// masses at rest. Real-time safe; takes up to half a millisecond for 13,000.
+    /// Gives all masses the wanted coefficients at once, if they have others. For masses at rest. Real-time safe; takes some
+    /// 100 µs for 13,000.
     pub(super) fn prepare(&mut self) {
-        while self.prepare_slice() {}
-        self.bands.settle();
-        self.gains = [self.noise_gain(); 2];
-    }
-
-    /// Does a slice of the work of giving all masses the wanted coefficients. Returns false if they have these already. For masses at
-    /// rest; the slices make no difference. Real-time safe.
-    pub(super) fn prepare_slice(&mut self) -> bool {
-        if self.given == Some(self.wanted) {
-            return false;
-        }
-        let done = match self.prepared {
-            Some((tuning, done)) if tuning == self.wanted => done,
-            _ => {
-                self.given = None;
-                self.tail.begin(&[], Some(self.wanted));
-                0
-            }
-        };
-        if done < SLICES {
-            self.tail.work(done + 1, SLICES);
-            self.prepared = Some((self.wanted, done + 1));
-        } else {
+        if self.given != Some(self.wanted) {
+            self.given = Some(self.wanted);
+            self.tail.begin(&[], self.given);
+            self.tail.work(1, 1);
             self.tail.finish(&mut self.tails[1], Some((&mut self.former, &mut self.parts)));
             self.heads[0].set(self.instructions, &self.parts, &mut self.past);
-            (self.given, self.prepared) = (Some(self.wanted), None);
         }
-        true
+        self.bands.settle();
+        self.gains = [self.noise_gain(); 2];
     }
 
     /// Begins with the wanted coefficients. If the masses, which are at rest, have others, they are given these in the first block, slice
     /// by slice, and the block is silent. Real-time safe.
     pub(super) fn begin(&mut self) {
-        self.prepared = None;
         if self.given != Some(self.wanted) {
             self.heads[0].forget();
             self.gains = [self.noise_gain(); 2];
@@ -282,7 +256,7 @@ impl Resonator {
         if self.is_changing {
             self.given = None;
         }
-        (self.is_changing, self.fades, self.prepared) = (false, false, None);
+        (self.is_changing, self.fades) = (false, false);
         self.bands.rest();
     }
 }

@@ -124,25 +124,6 @@ fn moved_bodies_are_those_made_so() {
     }
 }
 
-/// Whether a body at rest is prepared at once or slice by slice, and whatever it was prepared for before, makes no difference.
-#[test]
-fn slices_of_the_preparation_make_no_difference() {
-    let (modes, decay) = (Plate::default().modes(), Decay { low: 3.0, high: 1.0 });
-    let input = signal(2000, 500..1500);
-    let mut whole = Resonator::with_room(modes.len(), decay, 48_000.0);
-    whole.load(&modes);
-    let expected = played(&mut whole, &input);
-    for slices in [1, 70, SLICES, SLICES + 9] {
-        let mut body = Resonator::with_room(modes.len(), decay, 48_000.0);
-        body.load(&modes);
-        body.tune(1.3);
-        (0..slices).for_each(|_| _ = body.prepare_slice());
-        body.tune(1.0);
-        (0..slices).for_each(|_| _ = body.prepare_slice());
-        assert!(played(&mut body, &input) == expected, "{slices} slices");
-    }
-}
-
 /// Of springs, only T60s are tried with which an echo arrives before it has decayed: with shorter ones, the loudest frame is
 /// itself far below the masses, whose outputs cancel before an echo.
 #[test]
