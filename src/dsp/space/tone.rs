@@ -136,6 +136,7 @@ impl Tone {
         if !self.is_off() {
             self.ticks.advance(frames);
             self.passed = (self.passed + frames) % CONTROL_FRAMES;
+            self.silent_frames += frames as u64;
         }
     }
 
@@ -176,10 +177,6 @@ impl Tone {
         let mut start = 0;
         while start < frames {
             if self.ticks.is_due() {
-                // The filters' states are inaudible once both shelves are flat. They must not become subnormal.
-                if self.is_flat() || self.silent_frames > self.forget_frames() {
-                    self.shelves.iter_mut().for_each(|shelf| shelf.state = [0.0; 2]);
-                }
                 if self.is_flat() {
                     return;
                 }
@@ -204,6 +201,11 @@ impl Tone {
             }
             self.ticks.advance(end - start);
             start = end;
+            // The filters' states are inaudible once both shelves are flat. They must not become subnormal. At the end of a tick, since
+            // a tone control that is off is not asked to process.
+            if self.ticks.is_due() && (self.is_flat() || self.silent_frames > self.forget_frames()) {
+                self.shelves.iter_mut().for_each(|shelf| shelf.state = [0.0; 2]);
+            }
         }
     }
 }

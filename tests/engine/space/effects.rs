@@ -186,6 +186,27 @@ fn tails_end_when_told() {
     assert!(chain.2.is_silent() && left[5999] == 0.0);
 }
 
+/// Once all effects are off, it makes no difference whether they are asked to process before they are on again.
+#[test]
+fn effects_that_are_off_need_not_process() {
+    let mut asked = Chain::new();
+    asked.turn(0.7);
+    asked.process(&mut [0.5; 1000], &mut [0.3; 1000]);
+    asked.turn(0.0);
+    while !(asked.0.is_off() && asked.1.is_off() && asked.2.is_off() && asked.3.is_off()) {
+        asked.process(&mut [0.5], &mut [0.3]);
+    }
+    let left_alone = asked.clone();
+    asked.process(&mut [0.5; 100], &mut [0.3; 100]);
+    let [asked, left_alone] = [asked, left_alone].map(|mut chain| {
+        chain.turn(0.6);
+        let [mut left, mut right] = noise(0.5, 1000, 6007);
+        chain.process(&mut left, &mut right);
+        [left, right].map(|side| side.into_iter().map(f32::to_bits).collect::<Vec<_>>())
+    });
+    assert!(asked == left_alone);
+}
+
 /// While all effects are idle, skipped frames leave the same state as played silence: the tremolo's oscillator runs on.
 #[test]
 fn skipped_frames_are_silence() {
@@ -207,6 +228,11 @@ fn skipped_frames_are_silence() {
         skipped.0.skip(frames);
         skipped.2.skip(frames);
         assert!(is_idle(&played) && is_idle(&skipped));
+        let tail = |mut chain: Chain| {
+            chain.turn(0.3);
+            chain.2.tail_frames()
+        };
+        assert_eq!(tail(played.clone()), tail(skipped.clone()), "{frames}");
         assert_eq!(sound(&mut played), sound(&mut skipped), "{frames}");
     }
 }
