@@ -24,7 +24,7 @@ fn noise() -> Vec<f32> {
 }
 
 fn plate_beside_bank(criterion: &mut Criterion) {
-    let sheet = Plate::default().modes();
+    let sheet = Plate::default().modes().leak();
     let input = noise();
     let mut group = criterion.benchmark_group("space");
     group.sampling_mode(SamplingMode::Flat);
@@ -38,7 +38,7 @@ fn plate_beside_bank(criterion: &mut Criterion) {
                 }
             });
         });
-        let body = Resonator::new(&sheet, DECAY, RATE);
+        let body = Resonator::new(sheet, DECAY, RATE);
         group.throughput(Throughput::Elements((body.len() * FRAMES) as u64));
         let mut reverb = ModalReverb::new(body);
         reverb.set_mix(0.5);
@@ -71,7 +71,7 @@ fn bodies(criterion: &mut Criterion) {
         ("strings", Strings::new([110.0, 165.0, 220.0, 277.18]).modes()),
     ] {
         for moves in [false, true] {
-            let mut reverb = ModalReverb::new(Resonator::new(&modes, DECAY, RATE));
+            let mut reverb = ModalReverb::new(Resonator::new(modes.leak(), DECAY, RATE));
             reverb.set_mix(0.5);
             let mut pitch = 1.0;
             let id = BenchmarkId::new(name, if moves { "moving" } else { "at rest" });
@@ -96,7 +96,7 @@ fn effects(criterion: &mut Criterion) {
     let input = noise();
     let mut group = criterion.benchmark_group("effects");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(FRAMES as u64));
-    let mut sleeping = ModalReverb::new(Resonator::new(&Plate::default().modes(), DECAY, RATE));
+    let mut sleeping = ModalReverb::new(Resonator::new(Plate::default().modes().leak(), DECAY, RATE));
     sleeping.set_mix(0.5);
     sleeping.reset();
     let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);

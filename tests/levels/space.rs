@@ -8,11 +8,11 @@ use sprung::internals::space::{Decay, ModalReverb, Plate, Resonator};
 fn all_levels_have_the_bits_of_scalar_code() {
     let _alone = crate::LEVEL.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     // 333 modes: neither whole blocks nor a whole group.
-    let modes = Plate { length: 0.3, width: 0.171, thickness: 0.0005, ..Plate::default() }.modes();
+    let modes = Plate { length: 0.3, width: 0.171, thickness: 0.0005, ..Plate::default() }.modes().leak();
     assert!(!modes.len().is_multiple_of(16), "{}", modes.len());
     let render = |level: Level| {
         level.force().then(|| {
-            let body = Resonator::new(&modes, Decay { low: 0.3, high: 0.1 }, 48_000.0);
+            let body = Resonator::new(modes, Decay { low: 0.3, high: 0.1 }, 48_000.0);
             assert_eq!(body.instructions(), level);
             let mut reverb = ModalReverb::new(body);
             reverb.set_mix(0.5);

@@ -1,28 +1,18 @@
 //! Upper bounds of a body's energy, by bands of frequency, in closed form from its input.
 
 use super::decay::height_of_way;
-use super::modes::{BodyMode, ModeSet};
+use super::modes::{BANDS, BandModes, ModeSet};
 use super::ticks::BODY_TICK;
 use crate::dsp::mode_bank::tail::Energies;
-use libm::{exp, exp2, floor, log2, sqrt};
+use libm::{exp, exp2, sqrt};
 use std::ops::Range;
 
-/// Third octaves from 31 Hz to 40 kHz.
-pub(super) const BANDS: usize = 32;
-
-/// Modes of similar frequency, one after the other.
+/// What is known of the energy of a band's modes.
 #[derive(Clone, Debug)]
 struct Band {
-    modes: Range<usize>,
-    /// The positions of its lowest and its highest mode between low and high frequencies, at the body's reference pitch.
-    ways: [f32; 2],
+    of: &'static BandModes,
     /// Smallest and largest weight of the high decay among its modes; see [`height_of_way`].
     heights: [f64; 2],
-    /// Square roots of the number of its modes, and of the summed squared gains of the louder pick-up.
-    drive: f64,
-    pick_up: f64,
-    /// Sum of the squared gains, the mean of both sides.
-    power: f64,
     /// The slowest mode, and whether any mode is audible, with the coefficients that are wanted.
     wanted: Slowest,
     /// The same, and if the coefficients are changing, with the former ones.
@@ -43,6 +33,11 @@ struct Slowest {
 }
 
 impl Band {
+    /// Upper bound of the gain from the square root of the energy to either pick-up.
+    fn pick_up(&self) -> f64 {
+        self.of.pick_up * SUMS
+    }
+
     fn set(&mut self, now: Slowest) {
         self.now = now;
         self.per_tick = exp(now.ln_radius * BODY_TICK as f64);
@@ -71,34 +66,12 @@ impl Bands {
         Self { bands: Vec::with_capacity(BANDS) }
     }
 
-    /// Groups the modes of a body by their frequencies. Follow with [`Bands::change`] and [`Bands::settle`]. Real-time safe.
-    pub(super) fn load(&mut self, set: &ModeSet) {
+    /// Loads the bands of a body. Follow with [`Bands::change`] and [`Bands::settle`]. Real-time safe.
+    pub(super) fn load(&mut self, set: &'static ModeSet) {
+        let none = Slowest { is_heard: false, ln_radius: f64::NEG_INFINITY };
+        let band = |of| Band { of, heights: [0.0; 2], wanted: none, now: none, per_tick: 0.0, amplitude: 0.0 };
         self.bands.clear();
-        let (modes, ways) = (set.modes(), set.ways());
-        let index = |frequency: f64| floor((3.0 * log2(frequency / 31.25)).clamp(0.0, (BANDS - 1) as f64));
-        let mut start = 0;
-        while start < modes.len() {
-            let band = index(modes[start].frequency);
-            let end = start + modes[start..].partition_point(|mode| index(mode.frequency) <= band);
-            let squares = |gain: fn(&BodyMode) -> f64| -> f64 {
-                modes[start..end].iter().map(|mode| gain(mode) * mode.drive).map(|gain| gain * gain).sum()
-            };
-            let (left, right) = (squares(|mode| mode.left), squares(|mode| mode.right));
-            let none = Slowest { is_heard: false, ln_radius: f64::NEG_INFINITY };
-            self.bands.push(Band {
-                modes: start..end,
-                ways: [ways[start], ways[end - 1]],
-                heights: [0.0; 2],
-                drive: sqrt((end - start) as f64),
-                pick_up: sqrt(left.max(right)) * SUMS,
-                power: 0.5 * (left + right),
-                wanted: none,
-                now: none,
-                per_tick: 0.0,
-                amplitude: 0.0,
-            });
-            start = end;
-        }
+        self.bands.extend(set.bands.iter().map(band));
     }
 
     /// Sets the coefficients that are wanted: a pitch that adds `shift` to the ways of all modes, at which the first `heard`
@@ -106,10 +79,10 @@ impl Bands {
     /// and this one counts. Real-time safe.
     pub(super) fn change(&mut self, shift: f32, heard: usize, [low, span]: [f64; 2]) {
         for band in &mut self.bands {
-            band.heights = band.ways.map(|way| height_of_way(way + shift).into());
+            band.heights = band.of.ways.map(|way| height_of_way(way + shift).into());
             let [least, greatest] = band.heights;
             let ln_radius = -exp2((low + span * least).min(low + span * greatest));
-            let is_heard = band.modes.start < heard;
+            let is_heard = band.of.modes.start < heard;
             band.wanted = Slowest { is_heard, ln_radius };
             let ln_radius = if band.now.is_heard { ln_radius.max(band.now.ln_radius) } else { ln_radius };
             band.set(Slowest { is_heard: is_heard || band.now.is_heard, ln_radius });
@@ -131,7 +104,7 @@ impl Bands {
 
     /// The modes of a band.
     pub(super) fn modes(&self, index: usize) -> Range<usize> {
-        self.bands[index].modes.clone()
+        self.bands[index].of.modes.clone()
     }
 
     /// Gain at which the output is as loud as the input for white noise, at a decay. A mode's impulse response has the energy
@@ -139,7 +112,7 @@ impl Bands {
     pub(super) fn noise_gain(&self, [low, span]: [f64; 2]) -> f64 {
         let energy = |band: &Band| {
             let height = 0.5 * (band.heights[0] + band.heights[1]);
-            band.power / (4.0 * exp2(low + span * height))
+            band.of.power / (4.0 * exp2(low + span * height))
         };
         let sum: f64 = self.bands.iter().filter(|band| band.wanted.is_heard).map(energy).sum();
         if sum > 0.0 { 1.0 / sqrt(sum) } else { 0.0 }
@@ -149,7 +122,7 @@ impl Bands {
     /// if they become so, the head of the response makes this input heard.
     pub(super) fn tick(&mut self, input: f64) {
         for band in &mut self.bands {
-            band.amplitude = band.amplitude * band.per_tick + input * band.drive;
+            band.amplitude = band.amplitude * band.per_tick + input * band.of.drive;
         }
     }
 
@@ -165,14 +138,14 @@ impl Bands {
 
     /// Upper bound of the output of either pick-up, after further input whose magnitudes sum to `input`.
     pub(super) fn peak(&self, input: f64) -> f64 {
-        self.heard().map(|band| band.pick_up * (band.amplitude + input * band.drive)).sum()
+        self.heard().map(|band| band.pick_up() * (band.amplitude + input * band.of.drive)).sum()
     }
 
     /// Upper bound of the frames until that has fallen to `peak`. Takes one exponential per band for each of about five steps.
     pub(super) fn frames_until(&self, peak: f64, input: f64) -> u64 {
         let mut amplitudes = Energies::<BANDS>::NONE;
         for band in self.heard() {
-            amplitudes.add(band.pick_up * (band.amplitude + input * band.drive), band.now.ln_radius);
+            amplitudes.add(band.pick_up() * (band.amplitude + input * band.of.drive), band.now.ln_radius);
         }
         amplitudes.frames_until(peak)
     }

@@ -3,9 +3,9 @@
 //! Turning a knob retunes a body or loads another table; it computes no modes. This happens on the audio thread, at the
 //! resonator's control ticks, so a song that changes the size has the same bits everywhere. While sound passes, a
 //! retuned body continues at its new pitch, and its work is divided into the ticks of a block; another body starts when
-//! the previous one has faded out, after 20 ms: it is loaded at a tick and laid out in its first block, before it sounds. (Laid
-//! out at once, it took half of the time of a host's block of 64 frames. One that was set in silence still is, at the first sound,
-//! since that must be heard from its first frame on.)
+//! the previous one has faded out, after 20 ms: it is laid out in its first block, before it sounds. (Laid out at once, it took half of
+//! the time of a host's block of 64 frames.) One that was set in silence is laid out slice by slice in the silence that follows; what
+//! the first sound finds undone is done at once, since that must be heard from its first frame on.
 //!
 //! Rejected: making bodies with the sound and handing them over. A sound does not know the sample rate, each channel
 //! would need a state to be handed over with it, and a knob would need a thread that follows it. The price: a body has
@@ -68,7 +68,7 @@ impl Bodies {
     }
 
     /// The modes of a space. Real-time safe.
-    pub(super) fn of_space(&self, space: Space) -> Option<&ModeSet> {
+    pub(super) fn of_space(&'static self, space: Space) -> Option<&'static ModeSet> {
         match space {
             Space::None => None,
             Space::Plate => Some(&self.plate),
@@ -78,7 +78,7 @@ impl Bodies {
     }
 
     /// The modes of strings. Real-time safe.
-    pub(super) fn of_strings(&self, tuning: StringsTuning) -> &ModeSet {
+    pub(super) fn of_strings(&'static self, tuning: StringsTuning) -> &'static ModeSet {
         match tuning {
             StringsTuning::Chromatic => &self.chromatic,
             StringsTuning::Major => &self.major,

@@ -262,6 +262,10 @@ impl Space {
         }
         self.tremolo.skip(frames);
         self.tone.skip(frames);
+        if let Some(Resonant { strings, reverb, .. }) = self.resonant.as_deref_mut() {
+            strings.skip(frames);
+            reverb.skip(frames);
+        }
     }
 }
 

@@ -9,8 +9,8 @@ use sprung::internals::space::{Decay, ModalReverb, ModeSet, Plate, Resonator, Ro
 
 const OCTAVES: [f64; 7] = [125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0];
 
-fn reverb(modes: &ModeSet, decay: Decay, mix: f32) -> ModalReverb {
-    let mut reverb = ModalReverb::new(Resonator::new(modes, decay, RATE));
+fn reverb(modes: ModeSet, decay: Decay, mix: f32) -> ModalReverb {
+    let mut reverb = ModalReverb::new(Resonator::new(modes.leak(), decay, RATE));
     reverb.set_mix(mix);
     reverb.reset();
     reverb
@@ -21,7 +21,7 @@ fn a_plate_decays_as_asked_in_every_octave() {
     let plate = Plate::default().modes();
     for decay in [Decay { low: 2.0, high: 0.7 }, Decay { low: 0.8, high: 1.2 }] {
         let [mut left, mut right] = impulse(120_000);
-        reverb(&plate, decay, 1.0).process(&mut left, &mut right);
+        reverb(plate.clone(), decay, 1.0).process(&mut left, &mut right);
         for centre in OCTAVES {
             let asked = decay.t60_at(centre);
             let found = t60(&[octave(&left, centre), octave(&right, centre)]);
@@ -39,7 +39,7 @@ fn pick_ups_hear_different_things() {
         ("spring", Spring::default().modes(), 0.6),
     ] {
         let [mut left, mut right] = impulse(48_000);
-        reverb(&modes, Decay { low: 1.5, high: 1.0 }, 1.0).process(&mut left, &mut right);
+        reverb(modes, Decay { low: 1.5, high: 1.0 }, 1.0).process(&mut left, &mut right);
         for centre in [500.0, 1000.0, 2000.0, 4000.0] {
             let found = correlation(&octave(&left, centre), &octave(&right, centre));
             println!("{name}, {centre} Hz: {found:.3}");
@@ -61,7 +61,7 @@ fn noise_stays_as_loud_as_it_was() {
             // Both channels are equal, because their sum drives the body.
             right.copy_from_slice(&left);
             let before = rms(&left);
-            reverb(&modes, decay, 1.0).process(&mut left, &mut right);
+            reverb(modes.clone(), decay, 1.0).process(&mut left, &mut right);
             let both = rms(&[&left[48_000..], &right[48_000..]].concat());
             let change = decibels(both / before);
             println!("{name}: {change:+.2} dB");
@@ -76,7 +76,7 @@ fn springs_chirp() {
     // Without the short waves above the transition.
     let spring = Spring { wires: [6.0; 3], top: 3200.0, ..Spring::default() };
     let [mut left, mut right] = impulse(9600);
-    reverb(&spring.modes(), Decay { low: 2.0, high: 2.0 }, 1.0).process(&mut left, &mut right);
+    reverb(spring.modes(), Decay { low: 2.0, high: 2.0 }, 1.0).process(&mut left, &mut right);
     let arrival = |centre: f64| {
         let band = octave(&left, centre);
         let loudest = band.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));

@@ -35,13 +35,14 @@ fn energy_never_exceeds_what_came_in() {
             drive: next(),
             left: next(),
             right: next(),
-        }));
+        }))
+        .leak();
         let decay = |next: &mut dyn FnMut() -> f64| {
             let mut t60 = || 0.05 * libm::exp2(4.6 * (1.0 + next()));
             Decay { low: t60(), high: t60() }
         };
         let rate = [22_050.0, 44_100.0, 48_000.0, 192_000.0][seed as usize % 4];
-        let mut reverb = ModalReverb::new(Resonator::new(&modes, decay(&mut next), rate));
+        let mut reverb = ModalReverb::new(Resonator::new(modes, decay(&mut next), rate));
         reverb.set_mix(1.0);
         let norm = (modes.len() as f64).sqrt();
         // Input reaches the masses in the block after its own, slice by slice.
@@ -78,7 +79,7 @@ fn energy_never_exceeds_what_came_in() {
 fn it_sleeps_when_the_tail_is_over_and_says_when() {
     for (name, modes) in [("small plate", small()), ("springs", Spring::default().modes()), ("none", ModeSet::new([]))]
     {
-        let mut reverb = reverb(&modes, DECAY, 1.0);
+        let mut reverb = reverb(modes, DECAY, 1.0);
         assert!(reverb.is_silent() && reverb.tail_frames() == 0);
         let [mut left, mut right] = impulse(64);
         reverb.process(&mut left, &mut right);
@@ -109,7 +110,7 @@ fn it_sleeps_when_the_tail_is_over_and_says_when() {
 /// After noise, the first tail is a bound, which is far too long until the energy has been measured.
 #[test]
 fn what_is_measured_makes_tails_shorter() {
-    let mut reverb = reverb(&small(), DECAY, 1.0);
+    let mut reverb = reverb(small(), DECAY, 1.0);
     let [mut left, mut right] = noise(0.5, 48_000, 48_000);
     reverb.process(&mut left, &mut right);
     let told = reverb.tail_frames();
@@ -124,7 +125,7 @@ fn what_is_measured_makes_tails_shorter() {
 
 #[test]
 fn off_it_touches_nothing() {
-    let mut reverb = ModalReverb::new(Resonator::new(&small(), DECAY, RATE));
+    let mut reverb = ModalReverb::new(Resonator::new(small().leak(), DECAY, RATE));
     let signal = noise(0.5, 4800, 4800);
     let [mut left, mut right] = signal.clone();
     reverb.process(&mut left, &mut right);
@@ -146,7 +147,7 @@ fn off_it_touches_nothing() {
 
 #[test]
 fn blocks_do_not_matter() {
-    let mut one = reverb(&small(), DECAY, 0.4);
+    let mut one = reverb(small(), DECAY, 0.4);
     one.set_pre_delay(0.013);
     let mut signal = noise(0.3, 3000, 80_000);
     // The reverb is idle in between, and input wakes it within a control tick.
@@ -169,13 +170,13 @@ fn blocks_do_not_matter() {
 
 #[test]
 fn a_whole_plate_has_the_same_bits_in_blocks() {
-    let one = reverb(&Plate::default().modes(), Decay { low: 3.0, high: 1.0 }, 0.4);
+    let one = reverb(Plate::default().modes(), Decay { low: 3.0, high: 1.0 }, 0.4);
     blocks_are_equal(&one, &noise(0.3, 500, 700), &[], |_, _| {}, ModalReverb::process);
 }
 
 #[test]
 fn nothing_clicks() {
-    let mut rings = reverb(&small(), Decay { low: 2.0, high: 1.0 }, 1.0);
+    let mut rings = reverb(small(), Decay { low: 2.0, high: 1.0 }, 1.0);
     let [mut left, mut right] = noise(0.3, 24_000, 24_100);
     rings.process(&mut left, &mut right);
     let level = rms(&left[20_000..]);
@@ -229,7 +230,7 @@ fn above(samples: &[f32]) -> f64 {
 fn moves_are_smooth() {
     let modes = Plate { length: 0.9, width: 0.5, top: 2000.0, ..Plate::default() }.modes();
     let decay = Decay { low: 2.0, high: 1.0 };
-    let mut rings = reverb(&modes, decay, 1.0);
+    let mut rings = reverb(modes, decay, 1.0);
     let [mut left, mut right] = impulse(24_000);
     rings.process(&mut left, &mut right);
     type Turn = fn(&mut ModalReverb);
@@ -299,7 +300,7 @@ fn a_body_goes_over_into_another() {
     assert!(rings.body().len() == heard && frames < told + 32, "{frames} frames, {told} told");
     let [mut left, mut right] = noise(0.3, 4800, 4800);
     rings.process(&mut left, &mut right);
-    let new = reverb(&SMALL, DECAY, 1.0);
+    let new = reverb(small(), DECAY, 1.0);
     let [mut expected, mut expected_right] = noise(0.3, 4800, 4800);
     new.clone().process(&mut expected, &mut expected_right);
     assert!(left == expected && right == expected_right, "nothing is left of the one before");
@@ -314,8 +315,8 @@ fn pitch_is_that_of_a_body_made_so() {
         let size = 1.0 / f64::from(pitch).sqrt();
         let made = Plate { length: size * own.length, width: size * own.width, top: 5000.0 * f64::from(pitch), ..own };
         let [mut left, mut right] = impulse(4800);
-        reverb(&made.modes(), decay, 1.0).process(&mut left, &mut right);
-        let mut tuned = reverb(&own.modes(), decay, 1.0);
+        reverb(made.modes(), decay, 1.0).process(&mut left, &mut right);
+        let mut tuned = reverb(own.modes(), decay, 1.0);
         tuned.set_pitch(pitch);
         let [mut other, mut other_right] = impulse(4800);
         tuned.process(&mut other, &mut other_right);
@@ -331,7 +332,7 @@ fn pitch_is_that_of_a_body_made_so() {
 /// While it is idle, frames that are left out leave the same state as played silence.
 #[test]
 fn skipped_frames_are_silence() {
-    let mut played = reverb(&small(), DECAY, 0.5);
+    let mut played = reverb(small(), DECAY, 0.5);
     let mut skipped = played.clone();
     let [mut left, mut right] = noise(0.3, 5000, 5000);
     let mut bits = |reverb: &mut ModalReverb| {
@@ -352,7 +353,7 @@ fn skipped_frames_are_silence() {
 
 #[test]
 fn nonsense_is_survived() {
-    let mut rings = reverb(&small(), DECAY, 0.5);
+    let mut rings = reverb(small(), DECAY, 0.5);
     for value in [f32::NAN, f32::INFINITY, -f32::INFINITY, f32::MAX, 1e-40, -0.0] {
         rings.process(&mut [value; 100], &mut [value; 100]);
         rings.set_mix(value);

@@ -1,9 +1,9 @@
 //! How modes are laid out in blocks and groups of masses at a pitch, and their coefficients at a pitch and a decay.
 
 use super::super::decay::{Decay, height_of_way, shift};
+use super::super::modes::ModeSet;
 use super::fourier::Pair;
 use super::masses::{Block, Group, MOST_BLOCKS, Row};
-use super::modes::Modes;
 use super::taps::{DAMPINGS, FRACTIONS};
 use crate::dsp::power_of_two;
 use crate::dsp::simd::vector::{LANES, Vector};
@@ -14,6 +14,9 @@ use std::f64::consts::PI;
 /// Largest distance in grid steps between two modes of a group, and of a group that needs most terms for its damping. With
 /// larger ones, the taps would need more terms.
 const SPANS: [f64; 2] = [0.8, 0.5];
+
+/// Modes above this fraction of half the sample rate are left out.
+const TOP: f64 = 0.98;
 
 /// Points of a grid below the lowest frequency: taps reach three of them.
 pub(super) const MARGIN: usize = 4;
@@ -26,6 +29,7 @@ pub(super) fn grid_points(frames: usize) -> usize {
 /// What the coefficients depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Tuning {
+    sample_rate: f64,
     /// Ratio of the frequencies to those of the modes.
     pub(super) pitch: f64,
     /// Change of the modes' position between low and high frequencies.
@@ -39,9 +43,11 @@ pub(super) struct Tuning {
 }
 
 impl Tuning {
-    pub(super) fn new(pitch: f64, decay: Decay, sample_rate: f64, modes: &Modes) -> Self {
+    pub(super) fn new(pitch: f64, decay: Decay, sample_rate: f64, modes: &ModeSet) -> Self {
         let rates = decay.log_rates(sample_rate).map(|rate| rate as f32);
-        let mut tuning = Self { pitch, shift: shift(pitch) as f32, rates, heard: modes.heard(pitch), middle: 0.0 };
+        let is_heard = |frequency: &f64| frequency / sample_rate * pitch < 0.5 * TOP;
+        let heard = modes.frequencies[..modes.len()].partition_point(is_heard);
+        let mut tuning = Self { sample_rate, pitch, shift: shift(pitch) as f32, rates, heard, middle: 0.0 };
         if tuning.heard > 0 {
             // The rate is monotone over frequency.
             let [first, last] = [0, tuning.heard - 1].map(|mode| f64::from(tuning.rate(modes.ways[mode])));
@@ -103,13 +109,13 @@ impl Layout {
     pub(super) fn add_group(
         &mut self,
         instructions: Instructions,
-        modes: &Modes,
+        modes: &ModeSet,
         tuning: &Tuning,
         ready: usize,
     ) -> bool {
         let start = self.covered();
         let steps = 2.0 * self.frames as f64 * tuning.pitch;
-        let place = |mode: usize| modes.cycles[mode] * steps;
+        let place = |mode: usize| modes.frequencies[mode] / tuning.sample_rate * steps;
         let (first, mut ends, mut count) = (start, [start; MOST_BLOCKS], 0);
         let mut end = start;
         // The imaginary distance of a mode from its centre.
@@ -233,7 +239,7 @@ struct Tune<'a> {
     blocks: &'a mut [Block],
     halves: &'a mut [[Row; 2]],
     starts: &'a [usize],
-    modes: &'a Modes,
+    modes: &'a ModeSet,
     tuning: &'a Tuning,
     frames: f64,
     centre: f64,
@@ -249,12 +255,13 @@ impl Kernel for Tune<'_> {
         for b in 0..blocks.len() {
             let (start, count) = (starts[b], starts[b + 1] - starts[b]);
             let (block, to_half) = (&mut blocks[b], &mut halves[b]);
-            let cycles = &modes.cycles[start..start + LANES];
+            let frequencies = &modes.frequencies[start..start + LANES];
             let ways = &modes.ways[start..start + LANES];
             let gains = [&modes.gains[0][start..start + LANES], &modes.gains[1][start..start + LANES]];
             for lane in 0..LANES {
                 let on = if lane < count { 1.0 } else { 0.0 };
-                let (cycle, rate) = (cycles[lane] * tuning.pitch, f64::from(tuning.rate(ways[lane])));
+                let (cycle, rate) =
+                    (frequencies[lane] / tuning.sample_rate * tuning.pitch, f64::from(tuning.rate(ways[lane])));
                 // Adding and subtracting this number rounds to a whole number.
                 let (turns, whole) = (cycle * half, 1.5 * (1_u64 << 52) as f64);
                 let angle = PI * (turns - ((turns + whole) - whole));

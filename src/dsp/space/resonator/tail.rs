@@ -11,7 +11,6 @@ use super::super::modes::ModeSet;
 use super::fourier::Pair;
 use super::layout::{Layout, Tuning, grid_points};
 use super::masses::{Play, Spectra, Step};
-use super::modes::Modes;
 use super::sums::Sums;
 use super::taps::{FRACTIONS, Taps, tables};
 use crate::dsp::simd::Instructions;
@@ -23,7 +22,7 @@ use std::ops::Range;
 pub(super) struct Tail {
     instructions: Instructions,
     tables: &'static [[Taps; FRACTIONS]; 3],
-    modes: Modes,
+    modes: &'static ModeSet,
     layout: Layout,
     /// The coefficients that come next, and their layout as far as it is made.
     next: Option<Tuning>,
@@ -52,7 +51,7 @@ impl Tail {
         Self {
             instructions,
             tables: tables(),
-            modes: Modes::with_room(modes),
+            modes: ModeSet::none(),
             layout: Layout::with_room(modes, frames),
             next: None,
             next_layout: Layout::with_room(modes, frames),
@@ -69,19 +68,20 @@ impl Tail {
     }
 
     /// Loads other modes. Follow with a change of the coefficients. Real-time safe if there is room for as many.
-    pub(super) fn load(&mut self, set: &ModeSet, sample_rate: f64) {
-        self.modes.load(set, sample_rate);
-        let room = self.held[0].len().max(set.len() + LANES);
+    pub(super) fn load(&mut self, modes: &'static ModeSet) {
+        self.modes = modes;
+        let room = self.held[0].len().max(modes.len() + LANES);
         self.held.iter_mut().for_each(|row| row.resize(room, 0.0));
         self.layout.clear();
         (self.live, self.done, self.next) = (0, 0, None);
     }
 
-    pub(super) fn modes(&self) -> &Modes {
-        &self.modes
+    pub(super) fn modes(&self) -> &'static ModeSet {
+        self.modes
     }
 
-    /// Begins the work on a block of input, with a change of coefficients or without.
+    /// Begins the work on a block of input, with a change of coefficients or without. Until [`Tail::finish`], a change does nothing to
+    /// what the masses and the sums have: it may be begun anew.
     pub(super) fn begin(&mut self, input: &[f32], next: Option<Tuning>) {
         self.driven = input.iter().any(|sample| *sample != 0.0);
         if self.driven {
@@ -90,8 +90,7 @@ impl Tail {
         }
         (self.done, self.next) = (0, next);
         self.out.iter_mut().for_each(|row| row.fill(0.0));
-        if let Some(next) = next {
-            self.sums.damp(next.middle);
+        if next.is_some() {
             self.next_layout.clear();
             let rows = self.heads.iter_mut().flatten().chain(&mut self.former).chain(&mut self.held);
             rows.for_each(|row| row.fill(0.0));
@@ -117,7 +116,7 @@ impl Tail {
                 _ => self.layout.covered_by(end),
             };
             let first = self.next_layout.groups.len();
-            while self.next_layout.add_group(self.instructions, &self.modes, &tuning, ready) {}
+            while self.next_layout.add_group(self.instructions, self.modes, &tuning, ready) {}
             self.begin_groups(first);
         }
     }
@@ -140,6 +139,9 @@ impl Tail {
     /// and the head of the response in two parts.
     pub(super) fn finish(&mut self, tail: &mut Pair, change: Option<(&mut Pair, &mut [Pair; 2])>) {
         let is_moving = self.live > 0;
+        if let Some(next) = self.next {
+            self.sums.damp(next.middle);
+        }
         match is_moving {
             true => self.sums.collect(&self.out, false, tail),
             false => tail.iter_mut().for_each(|side| side.fill(0.0)),

@@ -38,6 +38,14 @@ impl ModalReverb {
         }
     }
 
+    /// Advances by silent frames, while it is idle: what was set in silence is laid out ahead of its first sound.
+    pub(crate) fn skip(&mut self, frames: usize) {
+        if self.state == State::Asleep {
+            let mut slices = 0..frames.div_ceil(BODY_TICK);
+            while slices.next().is_some() && self.body.prepare_ahead() {}
+        }
+    }
+
     /// Processes frames at rest, and returns their number: up to the first that wakes it. If the reverb is off, only the dry
     /// level acts; if it sleeps, silence is not changed.
     fn rest(&mut self, left: &mut [f32], right: &mut [f32]) -> usize {
