@@ -71,7 +71,7 @@ fn bodies(criterion: &mut Criterion) {
         ("strings", Strings::new([110.0, 165.0, 220.0, 277.18]).modes()),
     ] {
         for moves in [false, true] {
-            let mut reverb = ModalReverb::new(Resonator::new(modes.leak(), DECAY, RATE));
+            let mut reverb = ModalReverb::new(Resonator::new(modes.clone().leak(), DECAY, RATE));
             reverb.set_mix(0.5);
             let mut pitch = 1.0;
             let id = BenchmarkId::new(name, if moves { "moving" } else { "at rest" });
