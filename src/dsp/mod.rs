@@ -22,6 +22,7 @@ pub(crate) mod simd;
 pub(crate) mod smoothed;
 pub(crate) mod space;
 pub(crate) mod true_peak;
+pub(crate) mod wander;
 
 pub(crate) use cells::Cell;
 pub(crate) use classic_bank::ClassicBank;

@@ -1,6 +1,7 @@
 //! Random numbers as a function of a counter, so that any of them can be computed in any order on any machine.
 
 /// Mixes the bits of a 64-bit number (Steele, Lea and Flood 2014: the finaliser of SplitMix64).
+#[inline(always)]
 fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -15,6 +16,7 @@ pub fn key(seed: u64, serial: u64) -> u64 {
 }
 
 /// The 64 bits of the `n`-th number of a stream. From 1 on, these are the numbers of SplitMix64 with `key` as its seed.
+#[inline(always)]
 pub fn bits(key: u64, n: u64) -> u64 {
     mix(key.wrapping_add(n.wrapping_mul(GOLDEN_RATIO)))
 }

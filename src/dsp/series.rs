@@ -19,7 +19,7 @@ const INVERSE_FACTORIALS: [f64; 14] = {
 };
 
 /// Adding this rounds to the nearest integer, which the lowest bits of the sum then contain, negative ones as complement.
-const ROUND: f64 = 6_755_399_441_055_744.0;
+pub(crate) const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Sets `out[m]` to `2^(exponent · octaves[m])`, that is to the power `exponent` of the number whose logarithm to base 2 is
 /// `octaves[m]`. The relative error is below 1e−15. The octaves of the result are limited to ±1000.
