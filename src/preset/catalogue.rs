@@ -3,9 +3,43 @@
 use super::library::Library;
 use super::traits::traits;
 use super::{Family, KitPreset, Playable, Preset};
-use crate::error::{Error, similarity};
+use crate::error::{Error, LEAST_SIMILARITY, similarity};
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// Words that people search for, and those that our sounds have for the same. Makers' names stand for the kind of instrument.
+const OTHER_WORDS: &[(&str, &str)] = &[
+    ("rhodes", "electric piano"),
+    ("wurlitzer", "electric piano"),
+    ("wurli", "electric piano"),
+    ("epiano", "electric piano"),
+    ("e-piano", "electric piano"),
+    ("dx7", "electric piano 2"),
+    ("hammond", "organ"),
+    ("b3", "organ"),
+    ("farfisa", "organ"),
+    ("vibes", "vibraphone"),
+    ("glock", "glockenspiel"),
+    ("handpan", "steel tongue"),
+    ("hang", "steel tongue"),
+    ("steelpan", "steel drum"),
+    ("mbira", "kalimba"),
+    ("cymbalom", "dulcimer"),
+    ("cimbalom", "dulcimer"),
+    ("ukulele", "nylon guitar"),
+    ("double-bass", "contrabass"),
+    ("saxophone", "sax"),
+    ("hihat", "hat"),
+    ("hi-hat", "hat"),
+    ("bassdrum", "kick"),
+    ("bd", "kick"),
+    ("sd", "snare"),
+    ("hh", "hat"),
+    ("rimshot", "rim"),
+    ("808", "electronic"),
+    ("909", "electronic"),
+    ("vox", "voice"),
+];
 
 /// A sound of a catalogue.
 #[derive(Debug)]
@@ -76,7 +110,9 @@ impl Listed {
 
     /// Whether all of these words are in its name, tags, family or description. Case does not matter.
     pub fn has_words(&self, words: &str) -> bool {
-        words.to_lowercase().split_whitespace().all(|word| self.text.contains(word))
+        let has = |word: &str| self.text.contains(word);
+        let is_meant = |word: &str| OTHER_WORDS.iter().any(|(own, words)| *own == word && words.split(' ').all(has));
+        words.to_lowercase().split_whitespace().all(|word| has(word) || is_meant(word))
     }
 }
 
@@ -137,9 +173,12 @@ impl Catalogue {
         let mut all = self.sounds.clone();
         all.sort_by_cached_key(|listed| {
             let missing = words.split_whitespace().filter(|word| !listed.has_words(word)).count();
-            (missing, ((1.0 - similarity(&words, listed.name())) * 1e6) as u32)
-        });
-        all
+            let likeness = similarity(&words, listed.name());
+            (missing < count || likeness > LEAST_SIMILARITY).then_some((missing, ((1.0 - likeness) * 1e6) as u32))
+        };
+        let mut near: Vec<_> = self.sounds.iter().filter_map(|sound| Some((rank(sound)?, sound))).collect();
+        near.sort_by_key(|(rank, _)| *rank);
+        near.into_iter().map(|(_, sound)| sound.clone()).collect()
     }
 }
 
@@ -180,3 +219,9 @@ mod tests {
         assert_eq!((own.path.as_ref(), own.family_name()), (Some(&path), "mallet"));
     }
 }
+        for (word, words) in OTHER_WORDS {
+            assert!(!all.find(words).is_empty(), "{word}");
+            assert!(all.find(words).iter().all(|listed| listed.has_words(word)), "{word}");
+        }
+        assert!(found("rhodes").contains(&"Electric Piano 1".to_owned()));
+        assert!(all.nearest("qwzx").is_empty() && all.nearest("rhodos").is_empty(), "nothing is like it");
