@@ -170,9 +170,10 @@ impl SprungParams {
         self.locked().playable.rename(name);
     }
 
-    /// Says who made the preset or kit, and gives it other tags. Not for the audio thread.
-    pub(crate) fn describe(&self, author: String, tags: Vec<String>) {
-        self.locked().playable.describe(author, tags);
+    /// Describes the preset or kit as another one is described. Not for the audio thread.
+    pub(crate) fn describe_as(&self, other: &Playable) {
+        let texts = [other.comment(), other.details()].map(str::to_owned);
+        self.locked().playable.describe(other.author().to_owned(), other.tags().to_vec(), texts);
     }
 
     /// Size, zoom and theme of the window. Not for the audio thread.
