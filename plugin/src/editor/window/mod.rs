@@ -268,7 +268,12 @@ impl Window {
                 }
             }
             Some(Over::Manual) => {
-                if self.manual.show(ui, layout.page(), palette) {
+                if self.manual.show(ui, layout.page(), &mut controls) {
+                    self.over = None;
+                }
+            }
+            Some(Over::Devices) => {
+                if devices::show(ui, layout.page(), &mut controls) {
                     self.over = None;
                 }
             }
