@@ -112,8 +112,6 @@ fn pictures_of_nothing_and_empty_places_say_what_fills_them() {
         ("Voices", "Play a note: it gets a row"),
         ("Soundbox", "none: choose a type"),
         ("Space", "none: choose a type"),
-        ("Devices", "Nothing plays yet: choose an output"),
-        ("Devices", "No MIDI port is listed"),
     ] {
         stage.tab(tab);
         assert!(stage.paints(says), "{tab}: {says}");
@@ -128,3 +126,5 @@ fn pictures_of_nothing_and_empty_places_say_what_fills_them() {
     stage.tab("Motion");
     assert!(stage.paints("of the pad that was struck or chosen last"));
 }
+    stage.devices();
+    assert!(stage.paints("Nothing plays yet: choose an output") && stage.paints("No MIDI port is listed"));

@@ -15,6 +15,7 @@ use crate::editor::controls::history::History;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, FRAME, Interaction, Said};
 use crate::editor::displays::Displays;
+use crate::editor::devices;
 use crate::editor::drops;
 use crate::editor::drops::fitting::Fitting;
 use crate::editor::host::extent;
@@ -57,6 +58,8 @@ enum Over {
     Manual,
     Files,
 }
+    /// The program's devices.
+    Devices,
 
 /// An open window.
 pub(super) struct Window {

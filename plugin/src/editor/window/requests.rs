@@ -82,10 +82,7 @@ impl Window {
                 self.manual.open(topic(self.over, self.face, &self.pages));
                 self.over = Some(Over::Manual);
             }
-            Request::Devices => {
-                self.turn_to(Face::Sound);
-                self.pages.show_devices();
-            }
+            Request::Devices => self.over = Some(Over::Devices),
             Request::Theme(theme) => self.params.set_view(|view| view.theme = theme),
             Request::Step(places) => self.step(places, host),
             Request::Swap => {
