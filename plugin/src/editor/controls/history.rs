@@ -175,7 +175,7 @@ pub(crate) fn restore(mut state: State, params: &SprungParams, host: &GuiContext
 }
 
 /// Whether two states have the same sound and the same name.
-fn same_sound(one: &State, other: &State) -> bool {
+pub(crate) fn same_sound(one: &State, other: &State) -> bool {
     one.positions == other.positions && one.values == other.values && same_but_for_knobs(one, other)
 }
 

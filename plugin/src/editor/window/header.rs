@@ -76,6 +76,8 @@ pub(super) struct Header<'a> {
     /// Levels of left and right, as shares of the meter's length.
     pub(super) levels: [f32; 2],
     /// By how many decibels the limiter lowers the sound.
+    /// Whether the two versions differ.
+    pub(super) versions_differ: bool,
     pub(super) lowered: f32,
 }
 
@@ -117,6 +119,16 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
             on(header.is_browsing),
             Request::Browse,
             "Find another sound, by family, words and favourites.",
+    let [copies, copy_name] = match (header.versions_differ, header.is_b) {
+        (true, false) => ["A → B", "Copy A to B"],
+        (true, true) => ["B → A", "Copy B to A"],
+        (false, false) => ["A = B", "Copy A to B"],
+        (false, true) => ["A = B", "Copy B to A"],
+    };
+    let copy_help = match header.versions_differ {
+        true => "The two versions differ: make the other one a copy of this one.",
+        false => "The two versions are alike: there is nothing to copy.",
+    };
         ),
         ("Save", "Save", shrunk(44.0), Look::Plain, Request::Save, "Save this sound under a name."),
         ("Undo", "Undo", shrunk(46.0), enabled(&undo), Request::Undo, "Take the last change back."),
@@ -127,15 +139,11 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
             26.0,
             on(header.is_b),
             Request::Swap,
-            "Two versions of the sound to compare: go to the other one.",
-        ),
-        (
-            "Copy",
-            "Copy to the other version",
-            shrunk(46.0),
-            Look::Plain,
-            Request::Copy,
-            "Make the other version a copy of this one.",
+            if header.versions_differ {
+                "Two versions of the sound, which differ: go to the other one."
+            } else {
+                "Two versions of the sound, which are alike: go to the other one, and change it."
+            },
         ),
     ];
     for (text, name, width, look, wanted, help) in buttons {
@@ -145,6 +153,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
                 Request::Undo => undo.clone(),
                 Request::Redo => redo.clone(),
                 _ => None,
+        (copies, copy_name, shrunk(46.0), Look::Plain, Request::Copy, copy_help),
             };
             *controls.hint = Hint::new(title.unwrap_or_else(|| name.to_owned()), help);
         }

@@ -8,6 +8,7 @@ mod reach;
 mod requests;
 mod status;
 mod variation;
+mod versions;
 
 use crate::editor::binding;
 use crate::editor::browser::Browser;
@@ -33,7 +34,6 @@ use crate::editor::routes::{carry, learn};
 use crate::editor::theme::layout::Layout;
 use crate::editor::theme::{Theme, ZOOMS, install_fonts};
 use crate::params::SprungParams;
-use crate::state::State;
 use egui::{Event, Key, Modifiers, Ui};
 pub(super) use header::Face;
 use header::{Header, Request};
@@ -47,6 +47,7 @@ use status::{Load, StatusLine};
 use std::collections::BTreeSet;
 use std::hash::{BuildHasher as _, RandomState};
 use std::sync::Arc;
+use versions::Versions;
 
 /// Longest time in seconds by which moving pictures go on in one pass: after a pause they go on where they were.
 const LONGEST: f32 = 0.25;
@@ -91,9 +92,7 @@ pub(super) struct Window {
     over: Option<Over>,
     /// What was shown before the list of files.
     under: Option<Over>,
-    /// The other one of the two versions of the sound, and whether it is changed ([`History::is_changed`]).
-    other: Option<(State, bool)>,
-    is_b: bool,
+    versions: Versions,
     /// The context of a real window, and the zoom that it has, or will have with the first pass.
     context: Option<egui::Context>,
     zoom: f32,
@@ -154,8 +153,7 @@ impl Window {
             picker: Picker::default(),
             over: None,
             under: None,
-            other: None,
-            is_b: false,
+            versions: Versions::default(),
             context: None,
             zoom,
             screen: None,
@@ -234,7 +232,8 @@ impl Window {
             is_changed: controls.history.is_changed(),
             is_browsing: self.over == Some(Over::Browser),
             face: self.face,
-            is_b: self.is_b,
+            is_b: self.versions.is_b,
+            versions_differ: self.versions.differ(&params),
             view,
             screen: self.screen,
             locked: &self.locked,
@@ -401,7 +400,7 @@ impl Window {
     fn follow_loads(&mut self) {
         let loads = self.params.loads();
         if std::mem::replace(&mut self.loads, loads) != loads {
-            (self.history, self.other, self.is_b) = (History::default(), None, false);
+            (self.history, self.versions) = (History::default(), Versions::default());
             self.interaction.switched_off.clear();
             self.news = Some(Ok(String::new()));
         }

@@ -4,8 +4,8 @@ use super::header::{Face, Request};
 use super::variation::{Variation, VariationRequest};
 use super::{Over, Window, topic};
 use crate::editor::browser::Aim;
-use crate::editor::controls::files::load;
-use crate::editor::controls::history::{History, restore};
+use crate::editor::controls::files::load_changed;
+use crate::editor::controls::history::History;
 use crate::editor::host::extent;
 use crate::params::SprungParams;
 use crate::state::View;
@@ -51,8 +51,7 @@ impl Window {
         self.news = told.map(Ok);
         let now = (self.params.state(), self.history.is_changed());
         if go(&mut self.history, &self.params, host) {
-            self.other = Some(now);
-            self.is_b = !self.is_b;
+            self.versions.have_swapped(now);
         }
     }
 
@@ -85,25 +84,14 @@ impl Window {
             Request::Devices => self.over = Some(Over::Devices),
             Request::Theme(theme) => self.params.set_view(|view| view.theme = theme),
             Request::Step(places) => self.step(places, host),
-            Request::Swap => {
-                self.history.begin(&self.params);
-                let now = (self.params.state(), self.history.is_changed());
-                let mut is_changed = now.1;
-                if let Some((other, other_is_changed)) = self.other.replace(now) {
-                    restore(other, &self.params, host);
-                    is_changed = other_is_changed;
-                }
-                self.is_b = !self.is_b;
-                let name = if self.is_b { "version B" } else { "version A" };
-                self.history.end_swap(name, is_changed, &self.params);
-            }
+            Request::Swap => self.versions.swap(&mut self.history, &self.params, host),
             Request::Variation(VariationRequest::Lock(section)) => {
                 if !self.locked.remove(section) {
                     self.locked.insert(section);
                 }
             }
             Request::Variation(VariationRequest::Vary(variation)) => self.vary(variation, host),
-            Request::Copy => self.other = Some((self.params.state(), self.history.is_changed())),
+            Request::Copy => self.versions.copy((self.params.state(), self.history.is_changed())),
         }
     }
 }
