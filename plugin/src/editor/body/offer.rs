@@ -10,6 +10,8 @@ use sprung::preset::Family;
 use sprung_picture::{Origin, model_name, suggested_model};
 
 /// Widest button.
+/// What comes of a body for a table of modes.
+pub(crate) const TAKES: &str = "A body of it takes the place of the table of modes.";
 const WIDEST: f32 = 188.0;
 
 /// Says what a table of modes lacks, and offers to put the body in its place as which it is drawn.
@@ -21,11 +23,17 @@ pub(crate) fn offer(
     controls: &mut Controls,
 ) -> Option<(Origin, String)> {
     let (id, model) = suggested_model(family);
+    let (deed, suggested) = suggestion(origin, family);
+    let name = model_name(suggested_model(family).0);
+    say(ui, rect, text, [&deed, TAKES], controls).then(|| (suggested, format!("model {name}")))
+}
+
+/// What is done to make a table of modes the body as which it is drawn, and that body; another origin stays as it is.
+pub(crate) fn suggestion(origin: &Origin, family: Option<Family>) -> (String, Origin) {
     let name = model_name(id);
     let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-    let deed = format!("Make it {article} {name}");
-    let is_wanted = say(ui, rect, text, [&deed, "It takes the place of the table of modes."], controls);
-    is_wanted.then(|| (origin.with_model(false, Some(&model)), format!("model {name}")))
+    let body = if *origin == Origin::Table { origin.with_model(false, Some(&model)) } else { origin.clone() };
+    (format!("Make it {article} {name}"), body)
 }
 
 /// Says that a kit's sounds have bodies of their own, and offers to load the one that is shown.

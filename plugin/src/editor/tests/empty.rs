@@ -2,7 +2,7 @@
 
 use super::pictures::{Stage, facing, stage};
 use crate::devices::Devices;
-use crate::editor::theme::{SIZE, Theme};
+use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::window::Face;
 use crate::state::State;
 use egui::epaint::Shape;
@@ -10,6 +10,7 @@ use egui::{Key, Role};
 use egui_kittest::kittest::Queryable as _;
 use sprung::patch::routes::Routes;
 use sprung::preset::{Playable, Preset};
+use sprung_picture::Origin;
 use std::sync::atomic::Ordering::Relaxed;
 
 impl Stage {
@@ -99,6 +100,30 @@ fn what_has_no_body_to_change_is_offered_one() {
         stage.button("Load High Q alone");
         assert_eq!(stage.params.name(), "High Q");
     }
+}
+
+#[test]
+fn modes_alone_are_made_a_body_of_a_material_in_one_click() {
+    let made = |stage: &Stage| {
+        let origin = Origin::of(&stage.params.loaded().kit.sounds()[0].patch().modes);
+        origin.body().map(|body| (body.model.id(), body.material.id))
+    };
+    let mut stage = facing(Face::Play, "Marimba", SIZE, 1.0, Theme::Dark);
+    let before = stage.params.state();
+    assert!(!stage.paints("What it is made of") && made(&stage).is_none());
+    stage.harness.get_by_role_and_label(Role::RadioButton, "material: glass").click();
+    stage.harness.run_steps(3);
+    assert_eq!(made(&stage), Some(("marimba", "glass")));
+    assert!(stage.paints("What it is made of"));
+    stage.button("Undo");
+    assert!(stage.params.state() == before);
+    // Where there are no discs, the list does it.
+    let mut stage = facing(Face::Play, "Marimba", LEAST_SIZE, 1.0, Theme::Dark);
+    assert!(stage.harness.query_by_label("Make it a marimba").is_some());
+    stage.harness.get_by_role_and_label(Role::ComboBox, "All materials").click();
+    stage.harness.run_steps(3);
+    stage.button("glass");
+    assert_eq!(made(&stage), Some(("marimba", "glass")));
 }
 
 #[test]
