@@ -218,6 +218,7 @@ impl Window {
         let name = params.name();
         let mut controls = Controls {
             params: &params,
+            moved: self.shown.one_of_several(),
             host,
             palette,
             interaction: &mut self.interaction,
