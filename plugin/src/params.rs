@@ -10,7 +10,7 @@ use crate::link::Link;
 use crate::loaded::{Loaded, Slot};
 use crate::lock::lock;
 use crate::marks::{Mark, Marks};
-use crate::state::{self, Read, State, VIEW, View};
+use crate::state::{self, EditedPad, Read, State, VIEW, View};
 use nice_plug::prelude::*;
 use nice_plug_core::params::internals::ParamPtr;
 use sprung::internals::learned::{Controllers, Learned};
@@ -39,6 +39,8 @@ pub(crate) struct Look {
 struct Locked {
     /// The preset or kit as it was loaded.
     playable: Playable,
+    /// The pad to which the preset can be put back.
+    pad: Option<EditedPad>,
     /// Size, zoom and theme of the window.
     view: View,
     /// The parts of the last state that were not understood, one line each.
@@ -92,13 +94,14 @@ impl SprungParams {
 
     fn of(state: State, is_effect: bool) -> Self {
         let loaded = Arc::new(state.loaded());
-        let State { playable, positions, view, .. } = state;
+        let State { playable, pad, positions, view, .. } = state;
         let note_names = note_names(&playable);
         let knobs = PARAMS.iter().zip(positions).map(|(info, position)| Knob::new(info, position)).collect();
         let may_sound = Collector::default();
         may_sound.keep(&loaded);
         let complaints = Arc::new([]);
-        let locked = Locked { playable, view, complaints, loaded: loaded.clone(), may_sound, loads: 0, note_names };
+        let locked =
+            Locked { playable, pad, view, complaints, loaded: loaded.clone(), may_sound, loads: 0, note_names };
         Self {
             knobs,
             slot: Slot::new(loaded),
@@ -249,7 +252,7 @@ impl SprungParams {
         let note_names = note_names(&state.playable);
         let mut locked = self.locked();
         let is_renamed = std::mem::replace(&mut locked.note_names, note_names) != locked.note_names;
-        locked.playable = state.playable;
+        (locked.playable, locked.pad) = (state.playable, state.pad);
         if !self.extent.is_open() && !self.is_for_preset.load(Relaxed) {
             locked.view = state.view;
         }
@@ -278,7 +281,13 @@ impl SprungParams {
         if let Playable::Preset(preset) = &mut playable {
             preset.patch.values = values;
         }
-        State { playable, values, positions, seed: locked.loaded.seed, view: locked.view }
+        let pad = locked.pad.clone();
+        State { playable, pad, values, positions, seed: locked.loaded.seed, view: locked.view }
+    }
+
+    /// The pad to which the preset can be put back, if it was taken from one. Not for the audio thread.
+    pub(crate) fn pad(&self) -> Option<EditedPad> {
+        self.locked().pad.clone()
     }
 
     /// Whether a preset is loaded, and no kit. Not for the audio thread.

@@ -116,25 +116,20 @@ impl Shown {
         }
     }
 
-    /// The place in a kit of the sound whose modes are shown.
-    pub(crate) fn sound(&self) -> usize {
-        self.sound
-    }
-
     /// The name of the sound whose modes are shown.
     pub(crate) fn sound_name(&self) -> &str {
         self.kit().and_then(|kit| kit.sounds.get(self.sound)).map_or(self.playable.name(), |(_, preset)| &preset.name)
+    }
+
+    /// The patch; for a kit, that of the sound whose modes are shown.
+    pub(crate) fn patch(&self) -> &Patch {
+        self.loaded.kit.sounds()[self.sound].patch()
     }
 
     /// In a kit of several sounds, the one that is shown.
     pub(crate) fn one_of_several(&self) -> Option<Arc<Sound>> {
         let sounds = self.loaded.kit.sounds();
         (sounds.len() > 1).then(|| sounds[self.sound].clone())
-    }
-
-    /// The patch; for a kit, that of the sound whose modes are shown.
-    pub(crate) fn patch(&self) -> &Patch {
-        self.loaded.kit.sounds()[self.sound].patch()
     }
 
     /// The kit; none for a preset.

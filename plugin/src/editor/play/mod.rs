@@ -5,7 +5,7 @@ mod movers;
 pub(super) mod stage;
 mod things;
 
-use crate::editor::body::offer::offer_alone;
+use crate::editor::body::offer::offer_pad;
 use crate::editor::body::view::{BodyView, velocity};
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
@@ -97,7 +97,7 @@ impl PlayPage {
             }
             message = changed.and_then(Result::err);
         } else {
-            offer_alone(ui, inner.with_min_x(inner.right() - right), shown, controls);
+            offer_pad(ui, inner.with_min_x(inner.right() - right), shown, controls);
         }
         let spaces = stage::show_spaces(ui, foot, controls);
         if shown.preset().is_some() {

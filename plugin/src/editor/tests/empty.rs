@@ -57,13 +57,13 @@ fn a_search_without_a_result_shows_the_nearest_three_which_can_be_loaded() {
     stage.harness.key_press(Key::ArrowDown);
     stage.harness.run_steps(3);
     assert_eq!(stage.params.name(), "Marimba");
-    for (category, says) in [("Favourites", "None yet: a click on the star"), ("Your own", "None yet: Save keeps")] {
     stage.button("Clear the search");
     stage.type_text("qwzx");
     assert!(stage.paints("No sound is like this") && stage.listed() == 0);
     stage.button("Clear the search");
     stage.type_text("rhodes");
     assert!(stage.harness.query_by_role_and_label(Role::ListItem, "Electric Piano 1").is_some());
+    for (category, says) in [("Favourites", "None yet: a click on the star"), ("Your own", "None yet: Save keeps")] {
         stage.button(&format!("Show {category}"));
         assert!(stage.paints(says) && stage.listed() == 0, "{category}");
     }
@@ -97,7 +97,7 @@ fn what_has_no_body_to_change_is_offered_one() {
         if face == Face::Sound {
             stage.tab("Model");
         }
-        stage.button("Load High Q alone");
+        stage.button("Edit High Q");
         assert_eq!(stage.params.name(), "High Q");
     }
 }
@@ -141,6 +141,8 @@ fn pictures_of_nothing_and_empty_places_say_what_fills_them() {
         stage.tab(tab);
         assert!(stage.paints(says), "{tab}: {says}");
     }
+    stage.devices();
+    assert!(stage.paints("Nothing plays yet: choose an output") && stage.paints("No MIDI port is listed"));
     let ports = vec!["Keys".to_owned()];
     stage.params.link().devices.show(Devices { ports, ..Devices::default() });
     stage.harness.run_steps(3);
@@ -151,5 +153,3 @@ fn pictures_of_nothing_and_empty_places_say_what_fills_them() {
     stage.tab("Motion");
     assert!(stage.paints("of the pad that was struck or chosen last"));
 }
-    stage.devices();
-    assert!(stage.paints("Nothing plays yet: choose an output") && stage.paints("No MIDI port is listed"));

@@ -15,8 +15,8 @@ use crate::editor::browser::Browser;
 use crate::editor::controls::history::History;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, FRAME, Interaction, Said};
-use crate::editor::displays::Displays;
 use crate::editor::devices;
+use crate::editor::displays::Displays;
 use crate::editor::drops;
 use crate::editor::drops::fitting::Fitting;
 use crate::editor::host::extent;
@@ -58,9 +58,9 @@ enum Over {
     Browser,
     Manual,
     Files,
-}
     /// The program's devices.
     Devices,
+}
 
 /// An open window.
 pub(super) struct Window {
@@ -215,7 +215,7 @@ impl Window {
         let has_moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO);
         self.interaction.is_scrolling &= !has_moved;
         let mut hint = None;
-        let name = params.name();
+        let (name, pad) = (params.name(), params.pad().map(|pad| pad.name()));
         let mut controls = Controls {
             params: &params,
             moved: self.shown.one_of_several(),
@@ -230,6 +230,7 @@ impl Window {
         let header = Header {
             name: &name,
             words: &self.shown.words(),
+            pad: pad.as_deref(),
             is_changed: controls.history.is_changed(),
             is_browsing: self.over == Some(Over::Browser),
             face: self.face,
@@ -304,7 +305,10 @@ impl Window {
             }
             None if self.face == Face::Kit => {
                 let (page, others) = (layout.page(), (down, &mut self.browser));
-                reads = self.kit.show(ui, page, &mut self.shown, others, &mut controls).is_some();
+                match self.kit.show(ui, page, &mut self.shown, others, &mut controls) {
+                    Some(pages::Request::Sound) => self.face = Face::Sound,
+                    request => reads = request.is_some(),
+                }
             }
             None => {
                 self.modes.show(ui, layout.modes, &self.shown, &energies, &mut controls);
@@ -312,7 +316,7 @@ impl Window {
                 match self.pages.show(ui, &layout, &self.shown, (down, voices), &mut controls) {
                     Some(pages::Request::Manual) => reads = true,
                     Some(pages::Request::Say(message)) => self.news = Some(message),
-                    None => {}
+                    Some(pages::Request::Sound) | None => {}
                 }
             }
         }

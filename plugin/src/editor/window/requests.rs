@@ -33,7 +33,7 @@ impl Window {
             Some(varied) => {
                 self.news = Some(Ok(String::new()));
                 self.history.begin(&self.params);
-                load(Playable::Preset(varied), &self.params, host);
+                load_changed(Playable::Preset(varied), &self.params, host);
                 self.history.end(variation.name(), &self.params);
             }
             None => self.news = Some(Err("every variation that was tried is silent: unlock more sections".to_owned())),
@@ -58,6 +58,10 @@ impl Window {
     pub(super) fn carry_out(&mut self, request: Request, ui: &Ui, host: &GuiContext) {
         match request {
             Request::Show(face) => self.turn_to(face),
+            Request::Pad(key) => {
+                self.turn_to(Face::Kit);
+                self.kit.choose(key);
+            }
             Request::Browse | Request::Save => {
                 let closes = self.over == Some(Over::Browser) && request == Request::Browse;
                 self.over = (!closes).then_some(Over::Browser);
