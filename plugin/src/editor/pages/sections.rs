@@ -149,7 +149,7 @@ pub(in crate::editor) fn show_title(painter: &Painter, rect: Rect, section: Sect
     let name = line(painter, rect, Align2::LEFT_CENTER, &section[0].section.to_uppercase(), SMALL, muted);
     if section.iter().any(|info| controls.own(info).is_some()) {
         let rest = rect.with_min_x(name.right() + GAP);
-        let says = fitting(painter, &[ADDED, "added to the pads’", "added", ""], SMALL, rest.width());
+        let says = fitting(painter, &[ADDED, "added to each pad", "added", ""], SMALL, rest.width());
         line(painter, rest, Align2::LEFT_CENTER, says, SMALL, controls.palette.accent_text);
     }
 }
