@@ -2,7 +2,10 @@
 
 use crate::editor::controls::Controls;
 use crate::editor::controls::gestures::load;
+use crate::editor::controls::history::History;
+use crate::params::SprungParams;
 use crate::state::{EditedPad, State};
+use nice_plug_core::context::gui::GuiContext;
 use sprung::internals::editor::with_ending;
 use sprung::params::Param;
 use sprung::preset::{KitPreset, Playable, Preset};
@@ -34,19 +37,18 @@ pub(in crate::editor) fn take(key: u8, controls: &mut Controls) {
 }
 
 /// Loads the kit from which the sound was taken, with the sound as it is now on its pad, as one step. Returns the pad's key.
-pub(in crate::editor) fn put_back(controls: &mut Controls) -> Option<u8> {
-    controls.release();
+pub(in crate::editor) fn put_back(history: &mut History, params: &SprungParams, host: &GuiContext) -> Option<u8> {
     let State { playable: Playable::Preset(preset), pad: Some(EditedPad { key, kit }), seed, view, .. } =
-        controls.params.state()
+        params.state()
     else {
         return None;
     };
     let mut after = (*kit).clone();
     give(&mut after, key, &preset);
-    let is_changed = controls.history.is_changed() || after != *kit;
-    controls.history.begin(controls.params);
-    load(State::new(Playable::Kit(after), seed, view), controls.params, controls.host);
-    controls.history.end_of_pad(format!("{} put back", name_of(key)), is_changed, controls.params);
+    let is_changed = history.is_changed() || after != *kit;
+    history.begin(params);
+    load(State::new(Playable::Kit(after), seed, view), params, host);
+    history.end_of_pad(format!("{} put back", name_of(key)), is_changed, params);
     Some(key)
 }
 

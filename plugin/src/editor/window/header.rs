@@ -4,7 +4,6 @@ use super::meter;
 use super::variation::{self, VariationRequest};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::host::extent;
-use crate::editor::kit::edit::put_back;
 use crate::editor::routes::carry;
 use crate::editor::theme::{BRAND, GAP, SMALL, TEXT, Theme, ZOOMS};
 use crate::editor::widgets::buttons::{Look, button, tab};
@@ -46,8 +45,8 @@ pub(super) enum Request {
     Show(Face),
     /// Load the preset at this distance in the list.
     Step(isize),
-    /// Show the pad of this key.
-    Pad(u8),
+    /// Put the sound back to its pad.
+    PutBack,
     Browse,
     Save,
     Undo,
@@ -207,7 +206,7 @@ fn name_field(ui: &Ui, rect: Rect, header: &Header, is_narrow: bool, controls: &
             *controls.hint = Hint::new("Put back", format!("Returns this sound to {pad}, and shows the kit."));
         }
         if response.clicked() {
-            request = put_back(controls).map(Request::Pad).or(request);
+            request = Some(Request::PutBack);
         }
     }
     if button(ui, previous, "‹", "Previous sound", Look::Plain, palette).clicked() {

@@ -7,6 +7,7 @@ use crate::editor::browser::Aim;
 use crate::editor::controls::files::load_changed;
 use crate::editor::controls::history::History;
 use crate::editor::host::extent;
+use crate::editor::kit::edit::put_back;
 use crate::params::SprungParams;
 use crate::state::View;
 use egui::Ui;
@@ -58,9 +59,11 @@ impl Window {
     pub(super) fn carry_out(&mut self, request: Request, ui: &Ui, host: &GuiContext) {
         match request {
             Request::Show(face) => self.turn_to(face),
-            Request::Pad(key) => {
-                self.turn_to(Face::Kit);
-                self.kit.choose(key);
+            Request::PutBack => {
+                if let Some(key) = put_back(&mut self.history, &self.params, host) {
+                    self.turn_to(Face::Kit);
+                    self.kit.choose(key);
+                }
             }
             Request::Browse | Request::Save => {
                 let closes = self.over == Some(Over::Browser) && request == Request::Browse;
