@@ -104,7 +104,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 }
 
 /// Minimum similarity of a suggested candidate.
-const LEAST_SIMILARITY: f64 = 0.55;
+pub(crate) const LEAST_SIMILARITY: f64 = 0.55;
 
 const MOST_SUGGESTIONS: usize = 3;
 

@@ -8,8 +8,8 @@ macro_rules! pages {
 }
 
 pages! {
-    "sound" "recipes" "exciters" "bodies" "modulation" "space" "kits" "tuning" "mts-esp" "command" "batch" "python" "midi"
-    "live" "learn" "daw" "outputs" "resonator" "hosts" "window" "recordings" "lab"
+    "sound" "window" "recipes" "exciters" "bodies" "modulation" "space" "kits" "tuning" "daw" "live"
+    "midi" "learn" "mts-esp" "outputs" "resonator" "hosts" "recordings" "command" "batch" "python" "lab"
 }
 
 /// The table of contents, as Markdown.

@@ -10,7 +10,7 @@ use crate::link::Link;
 use crate::loaded::{Loaded, Slot};
 use crate::lock::lock;
 use crate::marks::{Mark, Marks};
-use crate::state::{self, Read, State, VIEW, View};
+use crate::state::{self, EditedPad, Read, State, VIEW, View};
 use nice_plug::prelude::*;
 use nice_plug_core::params::internals::ParamPtr;
 use sprung::internals::learned::{Controllers, Learned};
@@ -39,6 +39,8 @@ pub(crate) struct Look {
 struct Locked {
     /// The preset or kit as it was loaded.
     playable: Playable,
+    /// The pad to which the preset can be put back.
+    pad: Option<EditedPad>,
     /// Size, zoom and theme of the window.
     view: View,
     /// The parts of the last state that were not understood, one line each.
@@ -92,13 +94,14 @@ impl SprungParams {
 
     fn of(state: State, is_effect: bool) -> Self {
         let loaded = Arc::new(state.loaded());
-        let State { playable, positions, view, .. } = state;
+        let State { playable, pad, positions, view, .. } = state;
         let note_names = note_names(&playable);
         let knobs = PARAMS.iter().zip(positions).map(|(info, position)| Knob::new(info, position)).collect();
         let may_sound = Collector::default();
         may_sound.keep(&loaded);
         let complaints = Arc::new([]);
-        let locked = Locked { playable, view, complaints, loaded: loaded.clone(), may_sound, loads: 0, note_names };
+        let locked =
+            Locked { playable, pad, view, complaints, loaded: loaded.clone(), may_sound, loads: 0, note_names };
         Self {
             knobs,
             slot: Slot::new(loaded),
@@ -170,9 +173,10 @@ impl SprungParams {
         self.locked().playable.rename(name);
     }
 
-    /// Says who made the preset or kit, and gives it other tags. Not for the audio thread.
-    pub(crate) fn describe(&self, author: String, tags: Vec<String>) {
-        self.locked().playable.describe(author, tags);
+    /// Describes the preset or kit as another one is described. Not for the audio thread.
+    pub(crate) fn describe_as(&self, other: &Playable) {
+        let texts = [other.comment(), other.details()].map(str::to_owned);
+        self.locked().playable.describe(other.author().to_owned(), other.tags().to_vec(), texts);
     }
 
     /// Size, zoom and theme of the window. Not for the audio thread.
@@ -248,7 +252,7 @@ impl SprungParams {
         let note_names = note_names(&state.playable);
         let mut locked = self.locked();
         let is_renamed = std::mem::replace(&mut locked.note_names, note_names) != locked.note_names;
-        locked.playable = state.playable;
+        (locked.playable, locked.pad) = (state.playable, state.pad);
         if !self.extent.is_open() && !self.is_for_preset.load(Relaxed) {
             locked.view = state.view;
         }
@@ -277,7 +281,13 @@ impl SprungParams {
         if let Playable::Preset(preset) = &mut playable {
             preset.patch.values = values;
         }
-        State { playable, values, positions, seed: locked.loaded.seed, view: locked.view }
+        let pad = locked.pad.clone();
+        State { playable, pad, values, positions, seed: locked.loaded.seed, view: locked.view }
+    }
+
+    /// The pad to which the preset can be put back, if it was taken from one. Not for the audio thread.
+    pub(crate) fn pad(&self) -> Option<EditedPad> {
+        self.locked().pad.clone()
     }
 
     /// Whether a preset is loaded, and no kit. Not for the audio thread.

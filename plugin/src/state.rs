@@ -17,8 +17,10 @@ use serde_json::{Map, Value};
 use sprung::params::{PARAM_COUNT, PARAMS, Param, Unit, Values};
 use sprung::patch::Patch;
 use sprung::patch::routes::amount_param;
-use sprung::preset::{Playable, Preset};
+use sprung::preset::{KitPreset, Playable, Preset};
+use sprung::units::note_name;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The wrapper's name for the state.
 pub(crate) const FIELD: &str = "sprung";
@@ -34,7 +36,7 @@ const EXCITERS: [Param; 6] =
 const FORMAT: u64 = 1;
 
 /// The keys of a state.
-const KEYS: [&str; 9] = ["format", "preset", "kit", "values", "positions", "seed", "window", "zoom", "theme"];
+const KEYS: [&str; 10] = ["format", "preset", "kit", "values", "positions", "pad", "seed", "window", "zoom", "theme"];
 
 /// Size and look of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,11 +54,27 @@ pub(crate) const VIEW: View = View { size: theme::SIZE, zoom: 100, theme: Theme:
 /// Smallest and largest width and height of a window.
 pub(crate) const WINDOW_RANGE: [u32; 2] = [320, 8192];
 
+/// A pad whose sound is edited: the key, and the kit as it was heard.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct EditedPad {
+    pub(crate) key: u8,
+    pub(crate) kit: Arc<KitPreset>,
+}
+
+impl EditedPad {
+    /// The pad in words, such as `pad C2 of Acoustic Kit`.
+    pub(crate) fn name(&self) -> String {
+        format!("pad {} of {}", note_name(self.key), self.kit.name)
+    }
+}
+
 /// The whole state.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct State {
     /// The preset or kit. A preset's patch has the values below.
     pub(crate) playable: Playable,
+    /// The pad to which the preset can be put back, if it was taken from one.
+    pub(crate) pad: Option<EditedPad>,
     /// The parameters of the preset or kit.
     pub(crate) values: Values,
     /// The knob positions.
@@ -72,6 +90,13 @@ pub(crate) struct State {
 pub(crate) struct Read {
     pub(crate) state: State,
     pub(crate) complaints: Vec<String>,
+}
+
+/// The JSON of a pad whose sound is edited: its key, and the text of a kit file with all of its presets.
+#[derive(Serialize)]
+struct SavedPad {
+    key: u8,
+    kit: String,
 }
 
 /// The JSON of a state.
@@ -90,6 +115,8 @@ struct Saved {
     /// Knob positions that differ from those of the values, by parameter id.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     positions: BTreeMap<&'static str, f32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pad: Option<SavedPad>,
     seed: u64,
     window: [u32; 2],
     /// Left out at 100 %.
@@ -125,7 +152,7 @@ impl State {
             Playable::Preset(preset) => preset.patch.values,
             Playable::Kit(kit) => *kit.kit().values(),
         };
-        Self { playable, values, positions: positions_of(&values), seed, view }
+        Self { playable, pad: None, values, positions: positions_of(&values), seed, view }
     }
 
     /// The state of a sound as a resonator. A sound that no incoming sound drives has it at 0 dB, and nothing else moves its
@@ -155,9 +182,19 @@ impl State {
     /// The sound as it is heard, to be saved: a kit has the values of its knobs in its sounds.
     pub(crate) fn into_sound(self) -> Playable {
         match self.playable {
-            Playable::Kit(kit) => Playable::Kit(kit.with_values(&self.values)),
-            preset => preset,
+            Playable::Kit(kit) if *kit.kit().values() != self.values => Playable::Kit(kit.with_values(&self.values)),
+            as_it_is => as_it_is,
         }
+    }
+
+    /// The state with the sound of a kit's pad alone, as it is heard, to be edited. None if the key has no pad.
+    pub(crate) fn of_pad(self, key: u8) -> Option<Self> {
+        let Self { seed, view, .. } = self;
+        let Playable::Kit(kit) = self.into_sound() else { return None };
+        let (_, pad) = kit.pads.iter().find(|(own, _)| *own == key)?;
+        let (_, preset) = kit.sounds.get(pad.sound)?.clone();
+        let pad = Some(EditedPad { key, kit: Arc::new(kit) });
+        Some(Self { pad, ..Self::new(Playable::Preset(preset), seed, view) })
     }
 
     /// The part of the state for the audio thread. Computes the sounds.
@@ -176,6 +213,7 @@ impl State {
             kit: None,
             values: BTreeMap::new(),
             positions,
+            pad: self.pad.as_ref().map(|pad| SavedPad { key: pad.key, kit: pad.kit.to_whole_toml() }),
             seed: self.seed,
             window: self.view.size,
             zoom: Some(self.view.zoom).filter(|zoom| *zoom != VIEW.zoom),
@@ -221,6 +259,7 @@ impl State {
         };
         let view = read_view(&saved, &mut complaints);
         let mut state = Self::new(playable, seed.unwrap_or(0), view);
+        state.pad = saved.get("pad").and_then(|pad| read_pad(pad, &mut complaints));
         if let Playable::Kit(_) = state.playable {
             for (param, value) in numbers(&saved, "values", &mut complaints) {
                 match param.info().check(value) {
@@ -263,6 +302,23 @@ fn read_playable(saved: &Map<String, Value>, complaints: &mut Vec<String>) -> Re
     let (playable, lines) = read.map_err(|error| error.to_string())?;
     complaints.extend(lines);
     Ok(playable)
+}
+
+/// The pad from which the preset was taken.
+fn read_pad(pad: &Value, complaints: &mut Vec<String>) -> Option<EditedPad> {
+    let key = pad.get("key").and_then(Value::as_u64).and_then(|key| u8::try_from(key).ok());
+    let text = pad.get("kit").and_then(Value::as_str).unwrap_or_default();
+    let read = Playable::parse_lenient(text, "the pad's kit", &mut |name| Preset::find(name).cloned());
+    match (key, read) {
+        (Some(key), Ok((Playable::Kit(kit), lines))) if kit.pads.iter().any(|(own, _)| *own == key) => {
+            complaints.extend(lines);
+            Some(EditedPad { key, kit: Arc::new(kit) })
+        }
+        _ => {
+            complaints.push("pad: expected a key and a kit that has a pad on it".to_owned());
+            None
+        }
+    }
 }
 
 /// Size, zoom and theme of the window. Parts that are missing or cannot be read are as in a new window.

@@ -107,7 +107,7 @@ impl Param {
     }
 
     /// Whether it is of a kit as a whole, and not of each of its sounds. Real-time safe.
-    pub(crate) const fn is_of_kit(self) -> bool {
+    pub const fn is_of_kit(self) -> bool {
         matches!(self, Self::Voices | Self::Mode | Self::Priority | Self::Choke | Self::Limiter)
     }
 

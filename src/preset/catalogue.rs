@@ -1,11 +1,45 @@
 //! The catalogue of sounds: those of the factory and the user's own.
 
 use super::library::Library;
-use super::traits::traits;
+use super::traits::{traits, true_tags};
 use super::{Family, KitPreset, Playable, Preset};
-use crate::error::{Error, similarity};
+use crate::error::{Error, LEAST_SIMILARITY, similarity};
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// Words that people search for, and those that our sounds have for the same. Makers' names stand for the kind of instrument.
+const OTHER_WORDS: &[(&str, &str)] = &[
+    ("rhodes", "electric piano"),
+    ("wurlitzer", "electric piano"),
+    ("wurli", "electric piano"),
+    ("epiano", "electric piano"),
+    ("e-piano", "electric piano"),
+    ("dx7", "electric piano 2"),
+    ("hammond", "organ"),
+    ("b3", "organ"),
+    ("farfisa", "organ"),
+    ("vibes", "vibraphone"),
+    ("glock", "glockenspiel"),
+    ("handpan", "steel tongue"),
+    ("hang", "steel tongue"),
+    ("steelpan", "steel drum"),
+    ("mbira", "kalimba"),
+    ("cymbalom", "dulcimer"),
+    ("cimbalom", "dulcimer"),
+    ("ukulele", "nylon guitar"),
+    ("double-bass", "contrabass"),
+    ("saxophone", "sax"),
+    ("hihat", "hat"),
+    ("hi-hat", "hat"),
+    ("bassdrum", "kick"),
+    ("bd", "kick"),
+    ("sd", "snare"),
+    ("hh", "hat"),
+    ("rimshot", "rim"),
+    ("808", "electronic"),
+    ("909", "electronic"),
+    ("vox", "voice"),
+];
 
 /// A sound of a catalogue.
 #[derive(Debug)]
@@ -74,9 +108,11 @@ impl Listed {
     /// The family name of kits.
     pub const KIT: &str = "kit";
 
-    /// Whether all of these words are in its name, tags, family or description. Case does not matter.
+    /// Whether all of these words, or what they stand for, are in its name, tags, family or description. Case does not matter.
     pub fn has_words(&self, words: &str) -> bool {
-        words.to_lowercase().split_whitespace().all(|word| self.text.contains(word))
+        let has = |word: &str| self.text.contains(word);
+        let is_meant = |word: &str| OTHER_WORDS.iter().any(|(own, words)| *own == word && words.split(' ').all(has));
+        words.to_lowercase().split_whitespace().all(|word| has(word) || is_meant(word))
     }
 }
 
@@ -88,6 +124,32 @@ pub fn tags_of(playable: &Playable) -> Vec<String> {
         tags.extend(traits(preset).into_iter().filter(is_new).map(str::to_owned));
     }
     tags
+}
+
+/// The tags to save a sound with: its own, as far as they are still true of a preset.
+pub fn tags_to_save(playable: &Playable) -> Vec<String> {
+    match playable {
+        Playable::Preset(preset) if made_from(playable).is_some() => true_tags(preset),
+        _ => playable.tags().to_vec(),
+    }
+}
+
+/// The name of the factory sound whose description a sound still has, although it is another sound now.
+pub fn made_from(playable: &Playable) -> Option<&'static str> {
+    if playable.comment().is_empty() {
+        return None;
+    }
+    match playable {
+        Playable::Preset(preset) => {
+            let of = Preset::factory().iter().find(|other| other.comment == preset.comment)?;
+            (of.patch != preset.patch || of.tuning != preset.tuning).then_some(&of.name)
+        }
+        Playable::Kit(kit) => {
+            let of = KitPreset::factory().iter().find(|other| other.comment == kit.comment)?;
+            let is_same = of.sounds == kit.sounds && of.pads == kit.pads && of.params == kit.params;
+            (!is_same).then_some(&of.name)
+        }
+    }
 }
 
 impl Catalogue {
@@ -131,21 +193,28 @@ impl Catalogue {
         found
     }
 
-    /// All sounds, the nearest to these words first: those with the most of them, and of these the names that differ the least.
+    /// The sounds that have some of these words, or a name that may be meant, the nearest first: those with the most of the words, and
+    /// of these the names that differ the least.
     pub fn nearest(&self, words: &str) -> Vec<Arc<Listed>> {
         let words = words.trim().to_lowercase();
-        let mut all = self.sounds.clone();
-        all.sort_by_cached_key(|listed| {
+        let count = words.split_whitespace().count();
+        let rank = |listed: &Arc<Listed>| {
             let missing = words.split_whitespace().filter(|word| !listed.has_words(word)).count();
-            (missing, ((1.0 - similarity(&words, listed.name())) * 1e6) as u32)
-        });
-        all
+            let likeness = similarity(&words, listed.name());
+            (missing < count || likeness > LEAST_SIMILARITY).then_some((missing, ((1.0 - likeness) * 1e6) as u32))
+        };
+        let mut near: Vec<_> = self.sounds.iter().filter_map(|sound| Some((rank(sound)?, sound))).collect();
+        near.sort_by_key(|(rank, _)| *rank);
+        near.into_iter().map(|(_, sound)| sound.clone()).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::params::Param;
+    use crate::preset::body::modes_of_body;
+    use crate::sound::bodies::{Body, MATERIALS, Model};
 
     #[test]
     fn sounds_of_the_factory_and_the_user_are_found_by_words() {
@@ -166,6 +235,12 @@ mod tests {
         assert!(found("hand drum").contains(&"Conga".to_owned()), "by its family");
         assert!(found("kit acoustic").contains(&"Acoustic Kit".to_owned()));
         assert!(found("no such sound").is_empty());
+        for (word, words) in OTHER_WORDS {
+            assert!(!all.find(words).is_empty(), "{word}");
+            assert!(all.find(words).iter().all(|listed| listed.has_words(word)), "{word}");
+        }
+        assert!(found("rhodes").contains(&"Electric Piano 1".to_owned()));
+        assert!(all.nearest("qwzx").is_empty() && all.nearest("rhodos").is_empty(), "nothing is like it");
         let nearest = |words: &str| all.nearest(words)[0].name().to_owned();
         assert_eq!(["marimab", "acoustc kit"].map(nearest), ["Marimba", "Acoustic Kit"]);
         assert!(nearest("no such marimba").ends_with("Marimba"), "it has one of the words");
@@ -176,6 +251,20 @@ mod tests {
         {
             assert!(tags(name).contains(tag), "{name}: {}", tags(name));
         }
+        let marimba = Preset::find("Marimba").unwrap();
+        let made = |preset: &Preset| {
+            let playable = Playable::Preset(preset.clone());
+            (made_from(&playable), tags_to_save(&playable).join(" "))
+        };
+        assert_eq!(made(marimba), (None, "mallet wood".to_owned()));
+        let model = Model::find("marimba").unwrap().clone();
+        let mut glass = Preset { name: "Mine".to_owned(), ..marimba.clone() };
+        let material = *MATERIALS.iter().find(|material| material.id == "glass").unwrap();
+        glass.patch.modes = modes_of_body(&Body { material, ..Body::new(model) });
+        assert_eq!(made(&glass), (Some("Marimba"), "mallet glass".to_owned()));
+        let mut plucked = Preset::find("Bowed Glass").unwrap().clone();
+        plucked.patch.set(Param::BowLevel, Param::BowLevel.info().min);
+        assert!(!made(&plucked).1.contains("bow"), "{:?}", made(&plucked));
         let own = all.sounds.last().unwrap();
         assert_eq!((own.path.as_ref(), own.family_name()), (Some(&path), "mallet"));
     }

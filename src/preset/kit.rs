@@ -101,11 +101,17 @@ impl Playable {
         }
     }
 
-    /// Says who made it, and gives it other tags.
-    pub fn describe(&mut self, author: String, tags: Vec<String>) {
+    /// Says who made it, and gives it other tags, another description and other details.
+    pub fn describe(&mut self, author: String, tags: Vec<String>, [comment, details]: [String; 2]) {
         match self {
-            Self::Preset(preset) => (preset.author, preset.tags) = (author, tags),
-            Self::Kit(kit) => (kit.author, kit.tags) = (author, tags),
+            Self::Preset(preset) => {
+                (preset.author, preset.tags) = (author, tags);
+                (preset.comment, preset.details) = (comment, details);
+            }
+            Self::Kit(kit) => {
+                (kit.author, kit.tags) = (author, tags);
+                (kit.comment, kit.details) = (comment, details);
+            }
         }
     }
 

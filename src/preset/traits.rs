@@ -1,6 +1,8 @@
 //! What the knobs of a preset say of its sound, as tags: what moves the body, and how long it sounds.
 
 use super::Preset;
+use super::body::body_of_modes;
+use super::pair::pair_of_modes;
 use crate::params::Param;
 
 /// T60 in seconds of the loudest mode, below which a sound is short, and above which it is long.
@@ -12,6 +14,35 @@ const DRIVERS: [(Param, &str); 3] =
     [(Param::BowLevel, "bow"), (Param::BreathLevel, "breath"), (Param::NoiseHeld, "noise")];
 /// A burst of noise is part of most strikes: it counts where nothing else does.
 const BURST: (Param, &str) = (Param::NoiseLevel, "noise");
+
+/// Materials, and the tags of what is made of them.
+const MATERIALS: [(&[&str], &str); 3] = [
+    (&["rosewood", "maple", "spruce"], "wood"),
+    (&["steel", "aluminium", "brass", "bronze", "wire", "snare_wire"], "metal"),
+    (&["glass"], "glass"),
+];
+
+/// A preset's own tags, without those of materials and movers that its body and knobs have given up for others.
+pub(super) fn true_tags(preset: &Preset) -> Vec<String> {
+    let (traits, modes) = (traits(preset), &preset.patch.modes);
+    let body = body_of_modes(modes).or_else(|| pair_of_modes(modes).map(|pair| pair.first));
+    let of = |id| MATERIALS.iter().find(|(ids, _)| ids.contains(&id)).map(|(_, tag)| *tag);
+    let material = body.and_then(|body| of(body.material.id));
+    let is_mover = |tag: &str| STRIKES.iter().chain(&DRIVERS).any(|(_, mover)| *mover == tag);
+    let is_material = |tag: &str| MATERIALS.iter().any(|(_, material)| *material == tag);
+    let mut tags = Vec::new();
+    for tag in &preset.tags {
+        let tag = match material {
+            Some(now) if is_material(tag) => now,
+            _ if is_mover(tag) && !traits.contains(&tag.as_str()) => continue,
+            _ => tag,
+        };
+        if !tags.iter().any(|other| other == tag) {
+            tags.push(tag.to_owned());
+        }
+    }
+    tags
+}
 
 /// The tags of a preset that follow from its knobs.
 pub(super) fn traits(preset: &Preset) -> Vec<&'static str> {

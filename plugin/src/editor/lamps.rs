@@ -59,7 +59,7 @@ pub(crate) fn of(section: &str) -> Option<&'static Lamp> {
 impl Lamp {
     /// Whether the part is on.
     pub(crate) fn is_on(&self, controls: &Controls) -> bool {
-        self.params().any(|param| controls.value(param.info()) > param.info().min)
+        self.params().any(|param| controls.heard(param.info()) > param.info().min)
     }
 
     /// The parameters that are least while the part is off.

@@ -33,6 +33,7 @@ mod binding;
 mod body;
 mod browser;
 mod controls;
+mod devices;
 mod displays;
 mod drops;
 pub(crate) mod host;

@@ -2,6 +2,7 @@
 
 use crate::form::Form;
 use ecolor::Color32;
+use sprung::preset::Family;
 use sprung::sound::bodies::{Body, Model, Point};
 
 /// What is painted of a body.
@@ -16,6 +17,33 @@ pub struct Figure {
     pub tint: Color32,
     /// Thickness of a line as a share of the picture's shorter side; 0 for a string. It only tells bars from tubes.
     pub thickness: f32,
+    /// What is below a head in a small picture.
+    pub drum: Option<Drum>,
+}
+
+/// What is below the head of a drum. It only tells drums apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drum {
+    /// Height of the shell, in radii of the head.
+    pub depth: f32,
+    /// How much of the picture the drum takes.
+    pub size: f32,
+    /// The material of the shell.
+    pub shell: &'static str,
+    /// Whether snare wires are drawn.
+    pub has_wires: bool,
+}
+
+impl Drum {
+    /// The drum of a family, if it is one that has a shell of its own.
+    fn of(family: Option<Family>) -> Option<Self> {
+        match family? {
+            Family::Kick => Some(Self { depth: 1.3, size: 1.0, shell: "rosewood", has_wires: false }),
+            Family::Snare => Some(Self { depth: 0.3, size: 1.0, shell: "steel", has_wires: true }),
+            Family::Tom => Some(Self { depth: 0.7, size: 0.86, shell: "maple", has_wires: false }),
+            _ => None,
+        }
+    }
 }
 
 impl Figure {
@@ -39,13 +67,18 @@ impl Figure {
         Self { thickness: 2.0 * figure.thickness, ..figure }
     }
 
+    /// The figure of a drum of this family, if it is one; another stays as it is.
+    pub(crate) fn drummed(self, family: Option<Family>) -> Self {
+        Self { drum: Drum::of(family).filter(|_| self.form == Form::Round), ..self }
+    }
+
     fn with_grid(body: &Body, form: Form, grid: [usize; 2]) -> Self {
         let thickness = match body.model {
             Model::String => 0.0,
             Model::OpenTube | Model::StoppedTube | Model::Cone { .. } | Model::TubularBell => 0.11,
             _ => 0.07,
         };
-        Self { form, grid, points: Form::points(grid), tint: tint(body.material.id), thickness }
+        Self { form, grid, points: Form::points(grid), tint: tint(body.material.id), thickness, drum: None }
     }
 }
 

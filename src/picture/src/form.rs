@@ -5,7 +5,7 @@ use sprung::sound::bodies::{Model, Point};
 use std::f32::consts::TAU;
 
 /// How steeply the picture looks down on a body: sine and cosine of the angle.
-const LOOK: [f32; 2] = [0.5, 0.866];
+pub(crate) const LOOK: [f32; 2] = [0.5, 0.866];
 /// The direction from which the picture looks.
 pub(crate) const VIEW: [f32; 3] = [0.0, LOOK[1], LOOK[0]];
 /// The outline of a bell from its crown to its rim: height and radius.
@@ -123,6 +123,11 @@ impl Form {
             Self::Bell => ((width * 0.85).min(height / 0.9), 0.5),
             Self::Bowl => ((width * 0.85).min(height / 1.05), 0.5),
         }
+    }
+
+    /// The size of a picture in which a unit of [`Form::Round`] has so many pixels.
+    pub(crate) fn round_size(unit: f32) -> Vec2 {
+        vec2(2.0 * unit / 0.9, 1.6 * unit)
     }
 
     /// The largest displacement that the picture shows, in its unit.

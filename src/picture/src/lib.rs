@@ -9,7 +9,7 @@ mod shape;
 mod surface;
 mod swing;
 
-pub use figure::{Figure, tint};
+pub use figure::{Drum, Figure, tint};
 pub use form::Form;
 pub use origin::{Origin, model_name};
 pub use shape::{BodyShape, small_figure, suggested_model};

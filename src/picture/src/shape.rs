@@ -49,6 +49,7 @@ pub fn small_figure(modes: &ModeTable, family: Option<Family>) -> Figure {
         Some(body) => Figure::small(body),
         None => Figure::small(&Body::new(suggested_model(family).1)),
     }
+    .drummed(family)
 }
 
 impl BodyShape {
@@ -148,6 +149,17 @@ mod tests {
             let exact = moved[1..count - 1].iter().filter(|value| value.abs() < 1e-5).count();
             assert_eq!(nodes + exact, mode, "mode {} has that many nodes", mode + 1);
         }
+    }
+
+    #[test]
+    fn drums_are_told_apart_by_their_shells() {
+        let drum = |name: &str| {
+            let preset = Preset::find(name).unwrap();
+            small_figure(&preset.patch.modes, preset.guide.family).drum
+        };
+        let [kick, snare, tom] = ["Kick", "Snare", "Low Tom"].map(|name| drum(name).unwrap());
+        assert!(kick.depth > tom.depth && tom.depth > snare.depth && snare.has_wires && kick.size > tom.size);
+        assert_eq!((drum("Ride"), drum("Conga")), (None, None));
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! A body as it is painted: lit from the left above, and glowing where it moves.
 
-use crate::figure::Figure;
-use crate::form::{Form, VIEW};
+use crate::figure::{Drum, Figure, tint};
+use crate::form::{Form, LOOK, VIEW};
 use ecolor::{Color32, Rgba};
-use emath::{Pos2, Rect, vec2};
+use emath::{Pos2, Rect, Vec2, vec2};
 use sprung::sound::bodies::Point;
+use std::f32::consts::{PI, TAU};
 
 /// Where the light comes from: left, in front, above; a unit vector.
 const LIGHT: [f32; 3] = [-0.5, 0.45, 0.74];
@@ -14,6 +15,10 @@ const AMBIENT: f32 = 0.2;
 const GLOSS: f32 = 0.3;
 /// Points of a line that is as thick as a bar: the share of its thickness above the middle, and its light.
 const ROUND: [[f32; 2]; 4] = [[0.5, 0.62], [0.22, 1.15], [-0.2, 0.6], [-0.5, 0.22]];
+
+/// How many flat pieces a drum's shell has, and where its wires lie in front of and behind the middle of its head.
+const SHELL: usize = 16;
+const WIRES: [f32; 3] = [-0.45, 0.0, 0.45];
 
 /// A body as it is painted, in the order of its parts.
 #[derive(Debug, Default)]
@@ -36,6 +41,7 @@ impl Picture {
     pub fn of(rect: Rect, figure: &Figure, displacements: &[f32], strike: Option<Point>, glow: Color32) -> Self {
         let form = figure.form;
         let mut picture = Self::default();
+        let rect = figure.drum.map_or(rect, |drum| picture.shell(rect, drum));
         let displaced = |number: usize| displacements.get(number).copied().unwrap_or(0.0);
         let reach = form.reach(rect);
         let share = |number: usize| (displaced(number).abs() / reach).min(1.0).sqrt() * 0.85;
@@ -53,6 +59,10 @@ impl Picture {
         } else {
             picture.surface(rect, figure, &displaced, colour);
         }
+        if figure.drum.is_some_and(|drum| drum.has_wires) {
+            let wire = |y: f32| [-1.0, 1.0].map(|side| on_head(rect, [side * (1.0 - y * y).sqrt(), y]));
+            picture.edges.extend(WIRES.map(|y| wire(y).to_vec()));
+        }
         picture.strike = strike.map(|strike| {
             let at = |point| form.on(rect, point, 0.0);
             let far = |number: &usize| (at(figure.points[*number]) - at(strike)).length();
@@ -60,6 +70,28 @@ impl Picture {
             form.on(rect, strike, nearest.map_or(0.0, displaced))
         });
         picture
+    }
+
+    /// The shell of a drum. Returns the place of its head.
+    fn shell(&mut self, rect: Rect, drum: Drum) -> Rect {
+        let [sine, cosine] = LOOK;
+        let height = drum.depth * cosine;
+        let unit = drum.size * (0.45 * rect.width()).min(0.45 * rect.height() / (sine + 0.5 * height));
+        let down = vec2(0.0, unit * height);
+        let head = Rect::from_center_size(rect.center() - 0.5 * down, Form::round_size(unit));
+        let rim = |step: usize| Vec2::angled(PI * step as f32 / SHELL as f32);
+        for step in 0..=SHELL {
+            let (at, next) = (rim(step), 2 * step as u32);
+            let light = AMBIENT + (LIGHT[0] * at.x + LIGHT[1] * at.y).max(0.0) * (1.0 - AMBIENT) + 0.25;
+            let colour = lit(tint(drum.shell), light, 0.0);
+            let top = on_head(head, at.into());
+            self.vertices.extend([(top, colour), (top + down, colour)]);
+            if step < SHELL {
+                self.triangles.extend([[next, next + 1, next + 3], [next, next + 3, next + 2]]);
+            }
+        }
+        self.edges.push((0..=SHELL).map(|step| on_head(head, rim(step).into()) + down).collect());
+        head
     }
 
     /// A line as thick as a bar, round to the light.
@@ -103,14 +135,16 @@ impl Picture {
             );
             (form.on(rect, figure.points[number], displaced(number)), colour(number, light, highlight))
         };
-        self.vertices = (0..columns * rows).map(vertex).collect();
+        let before = self.vertices.len() as u32;
+        self.vertices.extend((0..columns * rows).map(vertex));
         // The farthest patches are painted first.
         let mut patches: Vec<usize> =
             (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| row * columns + column)).collect();
         let nearness = |patch: &usize| dot(places[*patch], VIEW) + dot(places[patch + columns + 1], VIEW);
         patches.sort_by(|a, b| nearness(a).total_cmp(&nearness(b)));
         for patch in &patches {
-            let corners = [*patch, patch + 1, patch + columns + 1, patch + columns].map(|corner| corner as u32);
+            let corners = [*patch, patch + 1, patch + columns + 1, patch + columns];
+            let corners = corners.map(|corner| before + corner as u32);
             self.triangles.push([corners[0], corners[1], corners[2]]);
             self.triangles.push([corners[0], corners[2], corners[3]]);
         }
@@ -134,6 +168,12 @@ impl Picture {
             edge((0..columns).map(|column| (column, rows - 1)).collect());
         }
     }
+}
+
+/// A place on a drum's head at rest, whose radius is 1: to the right, and to the viewer.
+fn on_head(rect: Rect, [x, y]: [f32; 2]) -> Pos2 {
+    let turn = Vec2::new(x, y).angle() / TAU - 0.25;
+    Form::Round.on(rect, Point { x: Vec2::new(x, y).length().into(), y: turn.into() }, 0.0)
 }
 
 /// A colour in a light, 1 for that in which the material's colour is seen, with a highlight.

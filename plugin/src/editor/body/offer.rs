@@ -1,7 +1,8 @@
-//! Buttons where there is no body to change: one puts a body in the place of a table of modes, one takes a sound out of a kit.
+//! Buttons where there is no body to change: one makes a table of modes a body, one edits a kit's pad.
 
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
+use crate::editor::kit::edit::{EDITS, take};
 use crate::editor::theme::{GAP, SMALL};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::paragraph;
@@ -9,6 +10,8 @@ use egui::{Rect, Shape, Ui};
 use sprung::preset::Family;
 use sprung_picture::{Origin, model_name, suggested_model};
 
+/// What comes of a body for a table of modes.
+pub(crate) const TAKES: &str = "A body of it takes the place of the table of modes.";
 /// Widest button.
 const WIDEST: f32 = 188.0;
 
@@ -20,20 +23,26 @@ pub(crate) fn offer(
     (origin, family): (&Origin, Option<Family>),
     controls: &mut Controls,
 ) -> Option<(Origin, String)> {
+    let (deed, suggested) = suggestion(origin, family);
+    let name = model_name(suggested_model(family).0);
+    say(ui, rect, text, [&deed, TAKES], controls).then(|| (suggested, format!("model {name}")))
+}
+
+/// What is done to make a table of modes the body as which it is drawn, and that body; another origin stays as it is.
+pub(crate) fn suggestion(origin: &Origin, family: Option<Family>) -> (String, Origin) {
     let (id, model) = suggested_model(family);
     let name = model_name(id);
     let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-    let deed = format!("Make it {article} {name}");
-    let is_wanted = say(ui, rect, text, [&deed, "It takes the place of the table of modes."], controls);
-    is_wanted.then(|| (origin.with_model(false, Some(&model)), format!("model {name}")))
+    let body = if *origin == Origin::Table { origin.with_model(false, Some(&model)) } else { origin.clone() };
+    (format!("Make it {article} {name}"), body)
 }
 
-/// Says that a kit's sounds have bodies of their own, and offers to load the one that is shown.
-pub(crate) fn offer_alone(ui: &Ui, rect: Rect, shown: &Shown, controls: &mut Controls) {
-    let text = "The sounds of a kit have bodies of their own. Load one of them to change its body.";
-    let deed = format!("Load {} alone", shown.sound_name());
-    if say(ui, rect, text, [&deed, "To change the sound itself: save it, and put it on a pad."], controls) {
-        controls.history.load_alone(shown.sound(), controls.params, controls.host);
+/// Says that a kit's sounds have bodies of their own, and offers to edit the pad that is shown.
+pub(crate) fn offer_pad(ui: &Ui, rect: Rect, shown: &Shown, controls: &mut Controls) {
+    let text = "The sounds of a kit have bodies of their own. Edit a pad to change its body.";
+    let deed = format!("Edit {}", shown.sound_name());
+    if say(ui, rect, text, [&deed, EDITS], controls) {
+        take(shown.guide().home, controls);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::edit::BodyEdit;
 use super::numbers::{Number, Part, written};
-use super::offer::{offer, offer_alone};
+use super::offer::{offer, offer_pad};
 use super::origin::OriginShown;
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
@@ -64,7 +64,7 @@ impl BodyPage {
         palette.paint_panel(ui.painter(), rect);
         let inner = rect.shrink(PADDING);
         if shown.preset().is_none() {
-            offer_alone(ui, inner, shown, controls);
+            offer_pad(ui, inner, shown, controls);
             return None;
         }
         if self.edit.as_ref().is_some_and(|edit| !edit.is_of(shown.loaded())) {

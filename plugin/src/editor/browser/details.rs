@@ -7,7 +7,7 @@ use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::{is_entered, line, name_field, paragraph, take_over};
 use crate::loaded::Loaded;
 use egui::{Align2, Id, Rect, TextEdit, Ui, pos2, vec2};
-use sprung::internals::library::{Library, Listed, check};
+use sprung::internals::library::{Library, Listed, check, made_from, tags_to_save};
 use sprung::preset::{Playable, Preset};
 use sprung::units::note_name;
 use std::sync::Arc;
@@ -35,28 +35,38 @@ struct About {
     author: String,
     /// With commas between them.
     tags: String,
+    comment: String,
+    details: String,
     /// The sound that they were proposed for.
     loaded: Arc<Loaded>,
 }
 
 impl About {
-    /// What is proposed for the loaded sound: its tags, and its author. What is made of a factory sound is not the factory's.
+    /// What is proposed for the loaded sound: what it has. What is made of a factory sound is not the factory's, and is not described as
+    /// that is.
     fn of(controls: &Controls) -> Self {
-        let sound = controls.params.state().playable;
+        let sound = controls.params.state().into_sound();
         let factory = Preset::factory().first().map_or("", |preset| preset.author.as_str());
         let author = Some(sound.author()).filter(|author| *author != factory).unwrap_or_default();
-        Self { author: author.to_owned(), tags: sound.tags().join(", "), loaded: controls.params.loaded() }
+        let [comment, details] = match made_from(&sound) {
+            Some(name) => [format!("Made from {name}."), String::new()],
+            None => [sound.comment().replace('\n', " "), sound.details().to_owned()],
+        };
+        let tags = tags_to_save(&sound).join(", ");
+        Self { author: author.to_owned(), tags, comment, details, loaded: controls.params.loaded() }
     }
 
-    /// The author and the tags.
-    fn read(&self) -> (String, Vec<String>) {
-        let tags = self.tags.split(',').map(str::trim).filter(|tag| !tag.is_empty());
-        (self.author.trim().to_owned(), tags.map(str::to_owned).collect())
+    /// Describes a sound.
+    fn write(&self, sound: &mut Playable) {
+        let tags = self.tags.split(',').map(str::trim).filter(|tag| !tag.is_empty()).map(str::to_owned);
+        let texts = [self.comment.trim().to_owned(), self.details.clone()];
+        sound.describe(self.author.trim().to_owned(), tags.collect(), texts);
     }
 }
 
-/// Height of the fields of author and tags.
-const ABOUT: f32 = 52.0;
+/// Height of each field of what is saved beside the name, and of all.
+const FIELD: f32 = 26.0;
+const ABOUT: f32 = 3.0 * FIELD;
 
 /// The state of the text field.
 #[derive(Default)]
@@ -67,7 +77,7 @@ pub(super) struct Details {
     of: String,
     /// A name whose file is replaced if the user saves again.
     confirm: Option<String>,
-    /// Author and tags to save with, once the user is about to save.
+    /// What to save beside the name, once the user is about to save.
     about: Option<About>,
     /// Whether the field takes the focus when it is shown next.
     takes_name: bool,
@@ -138,13 +148,14 @@ impl Details {
             let fields = [
                 ("by", "Author of the saved sound", "your name", &mut about.author),
                 ("tags", "Tags of the saved sound", "with commas between", &mut about.tags),
+                ("about", "Description of the saved sound", "what it is", &mut about.comment),
             ];
             for (row, (title, name, hint, text)) in fields.into_iter().enumerate() {
-                let top = rect.bottom() - 54.0 - ABOUT + 0.5 * row as f32 * ABOUT;
+                let top = rect.bottom() - 54.0 - ABOUT + row as f32 * FIELD;
                 let place = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), 24.0));
                 line(ui.painter(), place, Align2::LEFT_CENTER, title, SMALL, palette.muted);
                 let edit = TextEdit::singleline(text).id(Id::unique(name)).hint_text(hint);
-                let place = place.with_min_x(place.left() + 28.0);
+                let place = place.with_min_x(place.left() + 34.0);
                 let response = ui.put(place, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
                 name_field(&response, name, text);
                 enters |= is_entered(&response);
@@ -241,10 +252,9 @@ impl Details {
 
     /// The present sound as it is saved.
     fn sound(&mut self, controls: &Controls) -> Playable {
-        let (author, tags) = self.about.get_or_insert_with(|| About::of(controls)).read();
         let mut sound = controls.params.state().into_sound();
         sound.rename(self.name.trim());
-        sound.describe(author, tags);
+        self.about.get_or_insert_with(|| About::of(controls)).write(&mut sound);
         sound
     }
 
@@ -258,7 +268,7 @@ impl Details {
         Outcome::of(match library.save(&sound, replace) {
             Ok(path) => {
                 controls.params.rename(name);
-                controls.params.describe(sound.author().to_owned(), sound.tags().to_vec());
+                controls.params.describe_as(&sound);
                 controls.history.saved();
                 Ok(format!("saved {}", path.display()))
             }

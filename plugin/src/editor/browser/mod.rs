@@ -18,7 +18,7 @@ use details::{Details, Outcome};
 use egui::{Id, Key, Rect, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, pos2, vec2};
 use likeness::Likeness;
 use list::{List, ROW, row};
-use sounds::{Category, NONE, Sounds};
+use sounds::{Category, Sounds};
 use sprung::internals::library::{Library, Listed};
 use sprung::preset::{Guide, Playable};
 use std::sync::Arc;
@@ -141,7 +141,7 @@ impl Browser {
         if found.is_empty() {
             says = self.category.invitation();
             if says.is_empty() || !self.words.trim().is_empty() || !self.tags.are_empty() {
-                (found, says) = (sounds.nearest(&self.words, |_| true), NONE);
+                (found, says) = sounds.nearest(&self.words, |_| true);
             }
         }
         let chosen = match command {

@@ -10,8 +10,9 @@ use std::sync::Arc;
 
 /// How many sounds are shown in place of none.
 const NEAREST: usize = 3;
-/// What is said above them.
-pub(in crate::editor) const NONE: &str = "No sound has all of this. The nearest:";
+/// What is said above them, and where nothing is near.
+const NEAR: &str = "No sound has all of this. The nearest:";
+const NOTHING: &str = "No sound is like this: try a family, or another word.";
 
 /// A category of sounds in the browser.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -78,7 +79,7 @@ pub(in crate::editor) struct Sounds {
     recent: Vec<String>,
     /// The bodies of presets, by their places in memory.
     figures: BTreeMap<usize, Figure>,
-    /// All sounds by their distance to the words for which they were last ranked.
+    /// Sounds by their distance to the words for which they were last ranked.
     ranked: RefCell<Option<(String, Vec<Arc<Listed>>)>>,
     /// Files of the user that could not be read, and why.
     pub(in crate::editor) broken: Vec<String>,
@@ -148,14 +149,20 @@ impl Sounds {
         found
     }
 
-    /// The three sounds that are nearest to some words, among those that are wanted.
-    pub(in crate::editor) fn nearest(&self, words: &str, is_wanted: impl Fn(&Listed) -> bool) -> Vec<Arc<Listed>> {
+    /// Up to three sounds that are nearest to some words, among those that are wanted, and what is said above them.
+    pub(in crate::editor) fn nearest(
+        &self,
+        words: &str,
+        is_wanted: impl Fn(&Listed) -> bool,
+    ) -> (Vec<Arc<Listed>>, &'static str) {
         let mut ranked = self.ranked.borrow_mut();
         if ranked.as_ref().is_none_or(|(known, _)| known != words) {
             *ranked = Some((words.to_owned(), self.catalogue.nearest(words)));
         }
         let all = ranked.iter().flat_map(|(_, sounds)| sounds);
-        all.filter(|sound| is_wanted(sound)).take(NEAREST).cloned().collect()
+        let near: Vec<_> = all.filter(|sound| is_wanted(sound)).take(NEAREST).cloned().collect();
+        let says = if near.is_empty() { NOTHING } else { NEAR };
+        (near, says)
     }
 
     /// Adds a sound to the favourites or removes it. Returns a message if this cannot be stored.

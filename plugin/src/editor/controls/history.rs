@@ -78,16 +78,6 @@ impl History {
         self.lost = self.is_changed.then(|| params.name());
     }
 
-    /// Loads one of a kit's sounds alone, as it is heard now, as one step.
-    pub(crate) fn load_alone(&mut self, sound: usize, params: &SprungParams, host: &GuiContext) {
-        // Another kit may have been loaded in this moment.
-        if let Playable::Kit(heard) = params.state().into_sound()
-            && let Some((_, preset)) = heard.sounds.into_iter().nth(sound)
-        {
-            self.load(Playable::Preset(preset), params, host);
-        }
-    }
-
     /// The name of the sound that was loaded since the last call.
     pub(crate) fn take_chosen(&mut self) -> Option<String> {
         self.chosen.take()
@@ -112,6 +102,11 @@ impl History {
     /// Whether the user has changed the sound in this window since it was loaded or saved.
     pub(crate) fn is_changed(&self) -> bool {
         self.is_changed
+    }
+
+    /// Like [`History::end`], after a sound was taken from a kit's pad or put back, which loses no change.
+    pub(crate) fn end_of_pad(&mut self, name: String, is_changed: bool, params: &SprungParams) {
+        self.end_step(name, false, is_changed, params);
     }
 
     fn end_step(&mut self, name: String, swaps: bool, is_changed: bool, params: &SprungParams) {
@@ -175,7 +170,7 @@ pub(crate) fn restore(mut state: State, params: &SprungParams, host: &GuiContext
 }
 
 /// Whether two states have the same sound and the same name.
-fn same_sound(one: &State, other: &State) -> bool {
+pub(crate) fn same_sound(one: &State, other: &State) -> bool {
     one.positions == other.positions && one.values == other.values && same_but_for_knobs(one, other)
 }
 
@@ -187,5 +182,5 @@ fn same_but_for_knobs(one: &State, other: &State) -> bool {
         }
         playable
     };
-    one.seed == other.seed && neutral(&one.playable) == neutral(&other.playable)
+    one.seed == other.seed && one.pad == other.pad && neutral(&one.playable) == neutral(&other.playable)
 }

@@ -3,6 +3,7 @@
 pub(super) mod files;
 pub(super) mod gestures;
 pub(super) mod history;
+mod offsets;
 pub(super) mod shown;
 
 use crate::editor::theme::Palette;
@@ -16,7 +17,9 @@ use nice_plug_core::context::gui::GuiContext;
 use sprung::engine::SoundingNote;
 use sprung::params::{PARAMS, Param, ParamInfo};
 use sprung::preset::Playable;
+use sprung::sound::Sound;
 use std::collections::HashMap;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Time between two repaints while something moves.
@@ -103,6 +106,8 @@ impl Hint {
 /// The context of every widget, during one pass.
 pub(super) struct Controls<'a> {
     pub(super) params: &'a SprungParams,
+    /// In a kit of several sounds, whose own values the knobs move, the one that is shown.
+    pub(super) moved: Option<Arc<Sound>>,
     pub(super) host: &'a GuiContext,
     pub(super) palette: &'static Palette,
     pub(super) interaction: &'a mut Interaction,
@@ -125,9 +130,54 @@ impl Controls<'_> {
         self.params.loaded().value(info.param as usize, self.position(info))
     }
 
-    /// The value of a parameter as text.
+    /// The value of a parameter as text; of a knob that moves each pad's own value, what it does to that.
     pub(super) fn text(&self, info: &ParamInfo) -> String {
-        info.format(self.value(info))
+        self.written(info, self.value(info))
+    }
+
+    /// Another value, as [`Controls::text`] writes the present one.
+    pub(super) fn written(&self, info: &ParamInfo, value: f32) -> String {
+        if self.own(info).is_some() { offsets::written(info, value) } else { info.format(value) }
+    }
+
+    /// Reads a value as [`Controls::text`] writes it. The error says what was expected.
+    pub(super) fn read(&self, info: &ParamInfo, text: &str) -> Result<f32, String> {
+        if self.own(info).is_some() { offsets::read(info, text) } else { info.parse(text) }
+    }
+
+    /// The value that the shown pad itself has of a parameter, if the knob only moves those of all pads.
+    pub(super) fn own(&self, info: &ParamInfo) -> Option<f32> {
+        let is_of_all = info.param.is_behind_voices() || info.param.is_of_kit();
+        self.moved.as_ref().filter(|_| !is_of_all).map(|sound| sound.patch().get(info.param))
+    }
+
+    /// The value with which the shown sound is heard.
+    pub(super) fn heard(&self, info: &ParamInfo) -> f32 {
+        let value = self.value(info);
+        match self.own(info) {
+            Some(own) if value == info.default => own,
+            Some(own) => info.denormalise(info.normalise(own) + info.normalise(value) - info.normalise(info.default)),
+            None => value,
+        }
+    }
+
+    /// What the line at the bottom tells of a parameter under `title`.
+    pub(super) fn explain(&mut self, title: String, info: &ParamInfo) {
+        let help = match self.own(info) {
+            Some(_) => format!(
+                "Moves what each pad has itself; this one comes to {}. {}",
+                info.format(self.heard(info)),
+                info.help
+            ),
+            None => info.help.to_owned(),
+        };
+        *self.hint = Hint::new(title, help);
+    }
+
+    /// The position of a knob at which the shown sound is heard with this value.
+    pub(super) fn position_for(&self, info: &ParamInfo, heard: f32) -> f64 {
+        let own = self.own(info).map_or(0.0, |own| info.normalise(info.default) - info.normalise(own));
+        (info.normalise(heard) + own).clamp(0.0, 1.0)
     }
 
     /// What the host says of a parameter; the same in words, and its controller, to be put behind others.

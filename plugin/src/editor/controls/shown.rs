@@ -4,7 +4,7 @@ use crate::loaded::Loaded;
 use crate::params::SprungParams;
 use sprung::patch::Patch;
 use sprung::preset::{Family, Guide, KitPreset, OwnTuning, Playable, Preset};
-use sprung::sound::Pad;
+use sprung::sound::{Pad, Sound};
 use std::sync::Arc;
 
 /// The loaded preset or kit. Its parameters have the loaded values; the knobs have the present ones.
@@ -44,8 +44,11 @@ impl Shown {
 
     /// Shows the sound of a kit's pad, if the key has one.
     pub(crate) fn follow(&mut self, key: u8) {
-        if let (Playable::Kit(_), Some(pad)) = (&self.playable, self.loaded.kit.pad(key)) {
+        if let (Playable::Kit(kit), Some(pad)) = (&self.playable, self.loaded.kit.pad(key)) {
             (self.sound, self.guide.home) = (pad.sound, key);
+            if let Some((_, preset)) = kit.sounds.get(pad.sound) {
+                self.guide.macros.clone_from(&preset.guide.macros);
+            }
         }
     }
 
@@ -113,11 +116,6 @@ impl Shown {
         }
     }
 
-    /// The place in a kit of the sound whose modes are shown.
-    pub(crate) fn sound(&self) -> usize {
-        self.sound
-    }
-
     /// The name of the sound whose modes are shown.
     pub(crate) fn sound_name(&self) -> &str {
         self.kit().and_then(|kit| kit.sounds.get(self.sound)).map_or(self.playable.name(), |(_, preset)| &preset.name)
@@ -126,6 +124,12 @@ impl Shown {
     /// The patch; for a kit, that of the sound whose modes are shown.
     pub(crate) fn patch(&self) -> &Patch {
         self.loaded.kit.sounds()[self.sound].patch()
+    }
+
+    /// In a kit of several sounds, the one that is shown.
+    pub(crate) fn one_of_several(&self) -> Option<Arc<Sound>> {
+        let sounds = self.loaded.kit.sounds();
+        (sounds.len() > 1).then(|| sounds[self.sound].clone())
     }
 
     /// The kit; none for a preset.

@@ -1,6 +1,6 @@
 //! The chosen pad of a kit: its body, its name, pitch, level, place, choke group and output.
 
-use super::edit::{change, edited, name_of, pad, set};
+use super::edit::{EDITS, change, edited, name_of, pad, set};
 use super::pads::Deed;
 use crate::editor::body::face;
 use crate::editor::body::numbers::written;
@@ -91,13 +91,12 @@ impl Detail {
             let width = (feet.width() - 4.0) / 2.0;
             Rect::from_min_size(feet.min + vec2(place * (width + 4.0), 0.0), vec2(width, feet.height()))
         });
-        let response = button(ui, open, "Load alone", "Load this sound alone", Look::Plain, palette);
+        let response = button(ui, open, "Edit", "Edit this pad", Look::Plain, palette);
         if response.hovered() {
-            *controls.hint = Hint::new("Load alone", "To change the sound itself: save it, and put it on a pad.");
+            *controls.hint = Hint::new("Edit", EDITS);
         }
         if response.clicked() {
-            controls.history.load_alone(now.sound, controls.params, controls.host);
-            return None;
+            return Some(Deed::Edit(key));
         }
         let look = if kit.pads.len() > 1 { Look::Plain } else { Look::Disabled };
         button(ui, empty, "Empty", "Empty this pad", look, palette).clicked().then_some(Deed::Empty(key))

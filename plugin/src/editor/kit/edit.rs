@@ -2,13 +2,19 @@
 
 use crate::editor::controls::Controls;
 use crate::editor::controls::gestures::load;
-use crate::state::State;
+use crate::editor::controls::history::History;
+use crate::params::SprungParams;
+use crate::state::{EditedPad, State};
+use nice_plug_core::context::gui::GuiContext;
 use sprung::internals::editor::with_ending;
 use sprung::params::Param;
 use sprung::preset::{KitPreset, Playable, Preset};
 use sprung::sound::Pad;
 use sprung::units::note_name;
 
+/// What comes of editing a pad.
+pub(in crate::editor) const EDITS: &str =
+    "Opens the sound alone, to change it; Put back, beside its name, returns it to its pad.";
 /// The key of the first pad of a new kit: that of a kick.
 pub(super) const FIRST: u8 = 36;
 
@@ -18,6 +24,50 @@ pub(super) fn change(what: String, controls: &mut Controls, edit: impl FnOnce(&m
     controls.history.begin(controls.params);
     load(state, controls.params, controls.host);
     controls.history.end(what, controls.params);
+}
+
+/// Loads the sound of a kit's pad alone, as it is heard, to be edited and put back, as one step.
+pub(in crate::editor) fn take(key: u8, controls: &mut Controls) {
+    let Some(state) = controls.params.state().of_pad(key) else { return };
+    let is_changed = controls.history.is_changed();
+    controls.release();
+    controls.history.begin(controls.params);
+    load(state, controls.params, controls.host);
+    controls.history.end_of_pad(format!("edit {}", name_of(key)), is_changed, controls.params);
+}
+
+/// Loads the kit from which the sound was taken, with the sound as it is now on its pad, as one step. Returns the pad's key.
+pub(in crate::editor) fn put_back(history: &mut History, params: &SprungParams, host: &GuiContext) -> Option<u8> {
+    let State { playable: Playable::Preset(preset), pad: Some(EditedPad { key, kit }), seed, view, .. } =
+        params.state()
+    else {
+        return None;
+    };
+    let mut after = (*kit).clone();
+    give(&mut after, key, &preset);
+    let is_changed = history.is_changed() || after != *kit;
+    history.begin(params);
+    load(State::new(Playable::Kit(after), seed, view), params, host);
+    history.end_of_pad(format!("{} put back", name_of(key)), is_changed, params);
+    Some(key)
+}
+
+/// Gives the pad of a key another sound, and leaves the pad as it is. Pads that shared its sound keep that.
+fn give(kit: &mut KitPreset, key: u8, preset: &Preset) {
+    let Some(before) = pad(kit, key).cloned() else { return };
+    let is_shared = kit.pads.iter().any(|(other, pad)| *other != key && pad.sound == before.sound);
+    match kit.sounds.get_mut(before.sound).filter(|_| !is_shared) {
+        Some((_, sound)) => *sound = preset.clone(),
+        None => {
+            let sound = place_of(kit, preset);
+            set(kit, key, Some(Pad { sound, ..before }));
+        }
+    }
+    number_by_use(kit);
+    // A single sound brings its effects with it.
+    if kit.sounds.len() == 1 {
+        *kit = kit.clone().with_values(&preset.patch.values);
+    }
 }
 
 /// The state with a changed kit; none while a preset is loaded.
@@ -75,17 +125,22 @@ pub(super) fn set(kit: &mut KitPreset, key: u8, pad: Option<Pad>) {
 
 /// Puts a preset on a key, at the pitch of its home key. Place, choke group and output stay those of the pad before.
 pub(super) fn put(kit: &mut KitPreset, key: u8, preset: &Preset) {
+    let sound = place_of(kit, preset);
+    let before = pad(kit, key).cloned().unwrap_or(Pad::of(sound));
+    let pitch = Some(f64::from(preset.guide.home));
+    set(kit, key, Some(Pad { name: String::new(), sound, pitch, gain_db: 0.0, ..before }));
+}
+
+/// The place of a preset among the kit's sounds. One that is not there yet is added under a name of its own.
+fn place_of(kit: &mut KitPreset, preset: &Preset) -> usize {
     let known = kit.sounds.iter().position(|(_, known)| known == preset);
-    let sound = known.unwrap_or_else(|| {
+    known.unwrap_or_else(|| {
         let is_taken = |name: &str| kit.sounds.iter().any(|(other, _)| other == name);
         let numbered = (2..).map(|number| format!("{} {number}", preset.name));
         let name = std::iter::once(preset.name.clone()).chain(numbered).find(|name| !is_taken(name));
         kit.sounds.push((name.unwrap_or_default(), preset.clone()));
         kit.sounds.len() - 1
-    });
-    let before = pad(kit, key).cloned().unwrap_or(Pad::of(sound));
-    let pitch = Some(f64::from(preset.guide.home));
-    set(kit, key, Some(Pad { name: String::new(), sound, pitch, gain_db: 0.0, ..before }));
+    })
 }
 
 /// The pad of a key, to be put on another: its pitch stays.

@@ -1,7 +1,7 @@
 //! The face of a kit: its pads, the sounds that can be put on them, and the chosen pad; of a preset, its keys.
 
 mod detail;
-mod edit;
+pub(super) mod edit;
 mod keys;
 mod pads;
 mod sounds;
@@ -19,7 +19,7 @@ use crate::editor::widgets::text::line;
 use crate::link::Link;
 use crate::loaded::Loaded;
 use detail::Detail;
-use edit::{change, copy, name_of, put, set, swap};
+use edit::{change, copy, name_of, put, set, swap, take};
 use egui::{Align2, Rect, Ui, pos2, vec2};
 use pads::{Carried, Deed, Pads};
 use sounds::SoundList;
@@ -76,6 +76,11 @@ impl KitPage {
         self.release(controls.params.link());
     }
 
+    /// Chooses the pad of a key.
+    pub(super) fn choose(&mut self, key: u8) {
+        self.pads.choose(key);
+    }
+
     /// Releases the held keys.
     pub(super) fn release(&mut self, link: &Link) {
         self.pads.release(link);
@@ -128,12 +133,14 @@ impl KitPage {
         }
         shown.follow(self.pads.chosen());
         let put_here = clicked.map(|sound| Deed::Drop(Arc::new(Carried::Sound(sound)), key));
-        if let Some(deed) = put_here.or(deed) {
+        let deed = put_here.or(deed);
+        let edits = matches!(deed, Some(Deed::Edit(_)));
+        if let Some(deed) = deed {
             self.detail.leave(controls);
             self.carry_out(ui, deed, shown, controls);
         }
         self.audition.request_end(ui);
-        request
+        if edits { Some(Request::Sound) } else { request }
     }
 
     /// Shows which pads are seen, and buttons to see others.
@@ -188,6 +195,7 @@ impl KitPage {
                 change(format!("{} emptied", name_of(key)), controls, |kit| set(kit, key, None));
             }
             Deed::Empty(_) => {}
+            Deed::Edit(key) => take(key, controls),
         }
     }
 
@@ -220,7 +228,10 @@ impl KitPage {
         }
         let help = Rect::from_min_size(pos2(head.right() - 22.0, head.top()), vec2(22.0, HEAD - 4.0));
         let says = Rect::from_min_max(make.right_top() + vec2(10.0, 0.0), pos2(help.left(), make.bottom()));
-        let text = format!("All keys play {}: those that suit it are bright.", controls.params.name());
+        let text = match controls.params.pad() {
+            Some(pad) => format!("Of {}: Put back, above, returns the sound to it.", pad.name()),
+            None => format!("All keys play {}: those that suit it are bright.", controls.params.name()),
+        };
         line(ui.painter(), says, Align2::LEFT_CENTER, &text, TEXT, palette.muted);
         keys::show(ui, below, &mut self.keys, shown, down, controls);
         help_tab(ui, help, "kits", controls).then_some(Request::Manual)

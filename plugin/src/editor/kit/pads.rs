@@ -39,6 +39,8 @@ pub(super) enum Deed {
     /// Something was let go over it.
     Drop(Arc<Carried>, u8),
     Empty(u8),
+    /// Its sound is to be edited.
+    Edit(u8),
 }
 
 /// The state of the pads.

@@ -2,7 +2,7 @@
 
 use super::pads::Carried;
 use crate::editor::body::face;
-use crate::editor::browser::sounds::{Category, NONE, Sounds};
+use crate::editor::browser::sounds::{Category, Sounds};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{SMALL, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
@@ -53,8 +53,9 @@ impl SoundList {
         found.retain(|sound| is_preset(sound));
         let mut below = rect.with_min_y(field.bottom() + 6.0);
         if found.is_empty() {
-            found = sounds.nearest(&self.words, is_preset);
-            below.min.y += paragraph(ui.painter(), below, NONE, SMALL, palette.muted) + 4.0;
+            let (near, says) = sounds.nearest(&self.words, is_preset);
+            found = near;
+            below.min.y += paragraph(ui.painter(), below, says, SMALL, palette.muted) + 4.0;
         }
         let mut clicked = None;
         list::show(ui, below, "kit sounds", [rect.width(), ROW], (found.len(), None), |ui, place, cell| {

@@ -1,63 +1,136 @@
 //! The manual, shown over the window.
 
+mod contents;
 pub(super) mod text;
 
-use crate::editor::theme::{GAP, PADDING, Palette, RADIUS, TEXT, font};
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::theme::{GAP, PADDING, Palette, RADIUS, SMALL, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
+use crate::editor::widgets::text::{line, name_field, paragraph};
+use contents::{Entry, entries, first_with, has};
 use egui::text::{LayoutJob, TextFormat};
-use egui::{Align2, Color32, FontId, Label, Rect, RichText, ScrollArea, Sense, Stroke, Ui, UiBuilder, pos2, vec2};
+use egui::{
+    Align, Align2, Color32, FontId, Id, Label, Rect, RichText, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder,
+    pos2, vec2,
+};
 use sprung::internals::text::PAGES;
 use text::{Block, Style, blocks, pieces};
 
 /// Width of the list of pages.
-const SIDE: f32 = 112.0;
+const SIDE: f32 = 128.0;
+/// Height of a line of the contents.
+const ROW: f32 = 18.5;
 /// Longest line of text, in points: longer lines are hard to read.
 const WIDEST: f32 = 720.0;
 /// Width of the scroll bar with a little space.
 const BAR: f32 = 14.0;
 
-/// The manual's state: the page that is shown.
+/// The manual's state.
 #[derive(Default)]
 pub(super) struct Manual {
     page: usize,
+    /// The contents, read when they are first shown.
+    entries: Vec<Entry>,
+    /// The words that are searched, and the pages that have them.
+    words: String,
+    found: Vec<usize>,
+    /// Whether the text is to be scrolled to the words.
+    seeks: bool,
 }
 
 impl Manual {
     /// Opens the page of this name.
     pub(super) fn open(&mut self, name: &str) {
         self.page = PAGES.iter().position(|(known, _)| *known == name).unwrap_or(0);
+        self.words.clear();
     }
 
     /// Shows the manual. Returns whether the user closes it.
-    pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, palette: &Palette) -> bool {
+    pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, controls: &mut Controls) -> bool {
+        let palette = controls.palette;
         palette.paint_panel(ui.painter(), rect);
         let inner = rect.shrink(PADDING);
         let side = inner.with_max_x(inner.left() + SIDE);
+        self.search(ui, side.with_max_y(side.top() + 22.0), palette);
         let close = Rect::from_min_max(pos2(side.left(), side.bottom() - 22.0), side.max);
+        self.contents(ui, side.with_min_y(side.top() + 26.0).with_max_y(close.top() - 4.0), controls);
         let is_closed = button(ui, close, "Close", "Close the manual", Look::Plain, palette).clicked();
-        let list = side.with_max_y(close.top() - 4.0);
-        let mut child = ui.new_child(UiBuilder::new().id_salt("pages").max_rect(list));
-        ScrollArea::vertical().id_salt("pages").auto_shrink(false).show(&mut child, |ui| {
-            ui.spacing_mut().item_spacing.y = 0.0;
-            for (place, (name, _)) in PAGES.iter().enumerate() {
-                let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
-                let look = if place == self.page { Look::On } else { Look::Off };
-                if button(ui, row, name, &format!("Manual: {name}"), look, palette).clicked() {
-                    self.page = place;
-                }
-            }
-        });
         ui.painter().vline(side.right() + GAP, inner.y_range(), Stroke::new(1.0, palette.line));
         let text = inner.with_min_x(side.right() + 2.0 * GAP);
         let mut child = ui.new_child(UiBuilder::new().id_salt("manual").max_rect(text));
         ScrollArea::vertical().id_salt(("manual", self.page)).auto_shrink(false).show(&mut child, |ui| {
             // The scroll bar is drawn over the text.
             ui.set_max_width((ui.available_width() - BAR).min(WIDEST));
-            for block in blocks(PAGES[self.page].1) {
-                show_block(ui, &block, palette);
+            let blocks = blocks(PAGES[self.page].1);
+            let sought = std::mem::take(&mut self.seeks).then(|| first_with(&blocks, &self.words)).flatten();
+            for (place, block) in blocks.iter().enumerate() {
+                let top = ui.cursor().min;
+                show_block(ui, block, palette);
+                if sought == Some(place) {
+                    ui.scroll_to_rect(Rect::from_min_size(top, vec2(1.0, 1.0)), Some(Align::TOP));
+                }
             }
         });
         is_closed
+    }
+
+    /// Shows the field of words to search for. The first page that has them is opened as they are typed.
+    fn search(&mut self, ui: &mut Ui, rect: Rect, palette: &Palette) {
+        let clear = rect.with_min_x(rect.right() - rect.height());
+        let rest = if self.words.is_empty() { rect } else { rect.with_max_x(clear.left() - 4.0) };
+        let edit = TextEdit::singleline(&mut self.words).id(Id::unique("manual words")).hint_text("Search");
+        let response = ui.put(rest, edit.font(font(TEXT)).margin(vec2(6.0, 3.0)));
+        name_field(&response, "Search the manual", &self.words);
+        if rest != rect && button(ui, clear, "×", "Clear the search of the manual", Look::Plain, palette).clicked() {
+            self.words.clear();
+            response.request_focus();
+        }
+        if response.changed() {
+            self.found = (0..PAGES.len()).filter(|place| has(PAGES[*place].1, &self.words)).collect();
+            self.seeks = !self.words.trim().is_empty();
+            if self.seeks && !self.found.contains(&self.page) {
+                self.page = self.found.first().copied().unwrap_or(self.page);
+            }
+        }
+    }
+
+    /// Shows the pages by groups; while words are searched, those that have them.
+    fn contents(&mut self, ui: &mut Ui, rect: Rect, controls: &mut Controls) {
+        if self.entries.is_empty() {
+            self.entries = entries();
+        }
+        let (palette, is_searching) = (controls.palette, !self.words.trim().is_empty());
+        let mut child = ui.new_child(UiBuilder::new().id_salt("pages").max_rect(rect));
+        ScrollArea::vertical().id_salt("pages").auto_shrink(false).show(&mut child, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            if is_searching && self.found.is_empty() {
+                let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), 40.0), Sense::hover());
+                paragraph(ui.painter(), row, "No page has all of these words.", SMALL, palette.muted);
+            }
+            for entry in &self.entries {
+                let (row, _) = match entry {
+                    Entry::Group(_) if is_searching => continue,
+                    Entry::Page(place, ..) if is_searching && !self.found.contains(place) => continue,
+                    _ => ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover()),
+                };
+                match entry {
+                    Entry::Group(name) => {
+                        let place = row.with_min_x(row.left() + 2.0);
+                        line(ui.painter(), place, Align2::LEFT_CENTER, name, SMALL, palette.muted);
+                    }
+                    Entry::Page(place, title, about) => {
+                        let look = if *place == self.page { Look::On } else { Look::Off };
+                        let response = button(ui, row, title, &format!("Manual: {}", PAGES[*place].0), look, palette);
+                        if response.hovered() {
+                            *controls.hint = Hint::new(title, about);
+                        }
+                        if response.clicked() {
+                            (self.page, self.seeks) = (*place, is_searching);
+                        }
+                    }
+                }
+            }
+        });
     }
 }
 

@@ -13,6 +13,20 @@ pub(super) enum Block {
     Table(Vec<Vec<String>>),
 }
 
+impl Block {
+    /// All that is written in it.
+    pub(super) fn text(&self) -> String {
+        match self {
+            Self::Title(text)
+            | Self::Heading(text)
+            | Self::Paragraph(text)
+            | Self::Item(_, text)
+            | Self::Code(text) => text.clone(),
+            Self::Table(rows) => rows.iter().map(|row| row.join(" ")).collect::<Vec<_>>().join(" "),
+        }
+    }
+}
+
 /// The style of a piece of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Style {

@@ -88,12 +88,12 @@ impl ModesView {
         let modes = self.drag.as_ref().map_or(patch.modes.as_slice(), Drag::modes);
         let selected = self.drag.as_ref().map_or(hovered, Drag::place);
         if let Some(mode) = selected.and_then(|place| modes.get(place).map(|mode| (place, mode))) {
-            *controls.hint = describe(mode, controls.value(Param::Decay.info()), is_editable);
+            *controls.hint = describe(mode, controls.heard(Param::Decay.info()), is_editable);
         } else if pointer.is_some() {
             let help = "Double-click where there is none to add a mode; drag with the right button to draw levels.";
             *controls.hint = Hint::new(format!("{} modes", modes.len()), if is_editable { help } else { "" });
         }
-        let decay = controls.value(Param::Decay.info());
+        let decay = controls.heard(Param::Decay.info());
         face::paint(ui.painter(), &axes, palette, &Face { modes, decay, energies, selected });
     }
 

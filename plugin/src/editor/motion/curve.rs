@@ -1,6 +1,6 @@
 //! The curve of an envelope or oscillator, drawn by hand: its corners are dragged.
 
-use crate::editor::controls::{Controls, Hint};
+use crate::editor::controls::Controls;
 use crate::editor::pages::curves::{self, SUSTAIN, lengths, whole};
 use crate::editor::pages::sections::Section;
 use egui::{CursorIcon, Id, PointerButton, Pos2, Rect, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
@@ -59,7 +59,7 @@ impl Curve {
 
     /// Shows the curve of a section, if it has one.
     pub(super) fn show(&mut self, ui: &Ui, rect: Rect, section: Section, controls: &mut Controls) {
-        let values: Vec<f64> = section.iter().map(|info| f64::from(controls.value(info))).collect();
+        let values: Vec<f64> = section.iter().map(|info| f64::from(controls.heard(info))).collect();
         let roots = lengths(&|row| values[row]);
         let whole = self.grab.as_ref().map_or(whole(roots), |grab| grab.whole);
         let corners = match section[0].param {
@@ -99,7 +99,7 @@ impl Curve {
         let grab = self.grab.as_ref().filter(|grab| grab.corner.info.param == info.param);
         if let (Some(grab), Some(pointer), true) = (grab, pointer, response.dragged_by(PointerButton::Primary)) {
             let by = pointer - grab.pointer;
-            let position = info.normalise(info.clamp(grab.corner.dragged(by) as f32));
+            let position = controls.position_for(info, info.clamp(grab.corner.dragged(by) as f32));
             let is_moving = controls.interaction.gestures.moving() == Some(info.param as usize);
             if (by != Vec2::ZERO || is_moving) && position as f32 != controls.position(info) {
                 controls.turn(info, position);
@@ -114,7 +114,7 @@ impl Curve {
         let is_hot = response.hovered() || response.dragged();
         if is_hot {
             ui.ctx().set_cursor_icon(CursorIcon::Grab);
-            *controls.hint = Hint::new(format!("{} {}", info.name, controls.text(info)), info.help);
+            controls.explain(format!("{} {}", info.name, controls.text(info)), info);
         }
         let palette = controls.palette;
         let edge = Stroke::new(1.5, if is_hot { palette.text } else { palette.accent });

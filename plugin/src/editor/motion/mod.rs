@@ -6,13 +6,12 @@ pub(super) mod sources;
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::pages::Request;
-use crate::editor::pages::sections::{Section, knobs, sections};
+use crate::editor::pages::sections::{Section, knobs, sections, show_title};
 use crate::editor::routes::list;
-use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, SMALL, TITLE_HEIGHT};
+use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, TITLE_HEIGHT};
 use crate::editor::widgets::buttons::help_tab;
-use crate::editor::widgets::text::line;
 use curve::Curve;
-use egui::{Align2, Rect, Ui, pos2, vec2};
+use egui::{Rect, Ui, pos2, vec2};
 use sources::section_of;
 use sprung::patch::routes::Source;
 
@@ -75,8 +74,7 @@ impl MotionPage {
         controls: &mut Controls,
     ) {
         let title = Rect::from_min_size(rect.min + vec2(0.0, 2.0), vec2(rect.width(), TITLE_HEIGHT - 2.0));
-        let name = section[0].section.to_uppercase();
-        line(ui.painter(), title, Align2::LEFT_CENTER, &name, SMALL, controls.palette.muted);
+        show_title(ui.painter(), title, section, controls);
         let columns = section.len().div_ceil(rows);
         let [least, most] = CELL_WIDTH;
         let width = (0.5 * rect.width() / columns as f32).floor().clamp(least, most);

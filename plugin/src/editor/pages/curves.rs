@@ -27,11 +27,11 @@ pub(in crate::editor) fn paint(
     let palette = controls.palette;
     let first = section[0].param;
     if matches!(first, Param::Envelope1Delay | Param::Envelope2Delay) {
-        let value = |place: usize| f64::from(controls.value(&PARAMS[first as usize + place]));
+        let value = |place: usize| f64::from(controls.heard(&PARAMS[first as usize + place]));
         paint_envelope(painter, rect, &value, whole(lengths(&value)), palette);
         return Some("envelope".to_owned());
     }
-    let outline = outlines::of(section, &|info| controls.value(info))?;
+    let outline = outlines::of(section, &|info| controls.heard(info))?;
     let [floor, middle] = [rect.bottom(), rect.center().y].map(|y| painter.round_to_pixel_center(y));
     let (ground, height) = if outline.is_around { (middle, 0.46 * rect.height()) } else { (floor, rect.height()) };
     let place = |point: egui::Vec2| pos2(rect.left() + rect.width() * point.x, ground - height * point.y);

@@ -1,7 +1,6 @@
-//! The way of the sound and the page of its selected part: sections of parameters, the body, the tuning, the devices.
+//! The way of the sound and the page of its selected part: sections of parameters, the body, the tuning.
 
 pub(super) mod curves;
-mod devices;
 mod outlines;
 pub(super) mod path;
 mod scales;
@@ -18,7 +17,6 @@ use crate::editor::theme::layout::Layout;
 use crate::editor::widgets::buttons::help_tab;
 use crate::link::Link;
 use egui::{Rect, Ui, pos2, vec2};
-use nice_plug_core::context::PluginApi;
 use path::Part;
 use sections::PAGES;
 use sprung::params::PARAMS;
@@ -26,7 +24,7 @@ use sprung_picture::{Figure, small_figure};
 use tuning::TuningPage;
 
 /// The manual's page for each page, in their order.
-const TOPICS: [&str; 7] = ["exciters", "bodies", "space", "tuning", "bodies", "tuning", "window"];
+const TOPICS: [&str; 6] = ["exciters", "bodies", "space", "tuning", "bodies", "tuning"];
 /// Side of the button of the manual.
 const HELP: f32 = 22.0;
 /// Smallest width at which the voices fit beside the page's sections.
@@ -37,6 +35,8 @@ const SECTIONS: f32 = 344.0;
 /// A request of the user's.
 pub(super) enum Request {
     Manual,
+    /// Show what the sound is made of.
+    Sound,
     /// Show this message.
     Say(Said),
 }
@@ -60,11 +60,6 @@ impl Default for Pages {
 }
 
 impl Pages {
-    /// Selects the page of the devices.
-    pub(super) fn show_devices(&mut self) {
-        self.part = path::DEVICES;
-    }
-
     /// The page of the manual that explains the present page.
     pub(super) fn topic(&self) -> &'static str {
         TOPICS[self.part.1]
@@ -100,10 +95,6 @@ impl Pages {
         let (rect, (part, page)) = (layout.sections, self.part);
         let said = match part {
             "Model" => self.body.show(ui, rect, shown, controls).map(Err),
-            "Devices" => {
-                devices::show(ui, rect, controls);
-                None
-            }
             "Tuning" => self.tuning.show(ui, rect, shown, down, controls),
             _ => {
                 let mut left = rect;
@@ -131,9 +122,8 @@ impl Pages {
     }
 
     fn path(&mut self, ui: &Ui, rect: Rect, is_preset: bool, controls: &mut Controls) -> Option<Request> {
-        let is_alone = controls.host.plugin_api() == PluginApi::Standalone;
         let way = rect.with_max_x(rect.right() - HELP);
-        if let Some(part) = path::show(ui, way, self.part.0, [is_preset, is_alone], controls) {
+        if let Some(part) = path::show(ui, way, self.part.0, is_preset, controls) {
             self.leave(controls);
             (self.part, self.is_new) = (part, true);
         }
@@ -149,7 +139,7 @@ mod tests {
 
     #[test]
     fn every_page_has_a_page_of_the_manual() {
-        assert_eq!(path::names().count() + 1, TOPICS.len(), "and the page of devices");
+        assert_eq!(path::names().count(), TOPICS.len());
         assert!(TOPICS.iter().all(|topic| PAGES.iter().any(|(name, _)| name == topic)));
     }
 }

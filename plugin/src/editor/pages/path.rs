@@ -10,9 +10,6 @@ use egui::{Align2, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, po
 /// A part: its name, which is that of its section if it has one, and the page that shows it.
 pub(super) type Part = (&'static str, usize);
 
-/// The page of the devices, which only the standalone program has.
-pub(super) const DEVICES: Part = ("Devices", 6);
-
 /// Parts by panel and column, in the order in which the sound takes its way through them.
 const PATH: [&[&[Part]]; 4] = [
     &[&[("Pitch", 1), ("Voices", 3), ("Tuning", 5)]],
@@ -38,34 +35,23 @@ fn parts() -> impl Iterator<Item = Part> {
 /// A part of each page, in the order of the pages.
 #[cfg(test)]
 pub(in crate::editor) fn names() -> impl Iterator<Item = &'static str> {
-    (0..DEVICES.1).filter_map(|page| parts().find(|part| part.1 == page)).map(|(name, _)| name)
+    (0..6).filter_map(|page| parts().find(|part| part.1 == page)).map(|(name, _)| name)
 }
 
-/// Shows the path of a preset, or of a kit, which has no lamps, with one part selected; devices only in the standalone
-/// program. Returns the part that is clicked.
-pub(super) fn show(
-    ui: &Ui,
-    rect: Rect,
-    selected: &str,
-    [is_preset, is_alone]: [bool; 2],
-    controls: &mut Controls,
-) -> Option<Part> {
+/// Shows the path of a preset, or of a kit, which has no lamps, with one part selected. Returns the part that is clicked.
+pub(super) fn show(ui: &Ui, rect: Rect, selected: &str, is_preset: bool, controls: &mut Controls) -> Option<Part> {
     let palette = controls.palette;
-    let mut panels = PATH.to_vec();
-    if is_alone {
-        panels.push(&[&[DEVICES]]);
-    }
     let size = if rect.width() < WIDE { SMALL } else { TEXT };
     let width = |column: &[Part]| {
         let texts = column.iter().map(|(name, _)| text::width(ui.painter(), name, size));
         (indent(column) + texts.fold(0.0, f32::max) + 2.0 * MARGIN).ceil()
     };
     let whole = |panel: &&[&[Part]]| panel.iter().map(|column| width(column)).sum::<f32>() + 2.0 * MARGIN;
-    let widths: Vec<f32> = panels.iter().map(whole).collect();
+    let widths: Vec<f32> = PATH.iter().map(whole).collect();
     let rest = rect.width() - widths.iter().sum::<f32>();
-    let gap = (rest / (panels.len() - 1) as f32).clamp(GAP / 2.0, 12.0 * GAP);
+    let gap = (rest / (PATH.len() - 1) as f32).clamp(GAP / 2.0, 12.0 * GAP);
     let (mut left, mut clicked) = (rect.left(), None);
-    for (place, (panel, panel_width)) in panels.iter().zip(widths).enumerate() {
+    for (place, (panel, panel_width)) in PATH.iter().zip(widths).enumerate() {
         let frame = Rect::from_min_size(pos2(left, rect.top()), vec2(panel_width, 3.0 * ROW + 2.0));
         palette.paint_panel(ui.painter(), frame);
         if place < PATH.len() - 1 {

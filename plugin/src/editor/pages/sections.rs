@@ -9,7 +9,7 @@ use crate::editor::routes::Ring;
 use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, SMALL, TITLE_HEIGHT};
 use crate::editor::widgets::choice;
 use crate::editor::widgets::knob;
-use crate::editor::widgets::text::line;
+use crate::editor::widgets::text::{fitting, line};
 use egui::{Align2, Painter, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
 use sprung::params::{Choice as _, PARAMS, Param, ParamInfo, Space, Unit};
 use sprung::patch::Patch;
@@ -29,6 +29,8 @@ const PICTURE: f32 = 132.0;
 const SMALLEST: f32 = 50.0;
 /// Least width of a cell, in which each name and each choice is whole.
 const LEAST: f32 = 69.0;
+/// Said of the knobs of a kit.
+pub(in crate::editor) const ADDED: &str = "added to what each pad has";
 /// Said below a picture of nothing.
 const CHOOSE: &str = "none: choose a type";
 /// How much of the brightness is left of a part that is off.
@@ -114,7 +116,7 @@ pub(super) fn show(
             let palette = controls.palette;
             palette.paint_panel(ui.painter(), panel);
             let title = Rect::from_min_size(panel.min + vec2(PADDING, 2.0), vec2(size.x - PADDING, TITLE_HEIGHT - 2.0));
-            line(ui.painter(), title, Align2::LEFT_CENTER, &section[0].section.to_uppercase(), SMALL, palette.muted);
+            show_title(ui.painter(), title, section, controls);
             if is_large {
                 let side = PICTURE - GAP;
                 let height = (panel.height() - TITLE_HEIGHT - PADDING).min(1.15 * side);
@@ -139,6 +141,17 @@ pub(super) fn show(
             knobs(ui, grid, columns(section), section, (patch, guide), controls);
         }
     });
+}
+
+/// Shows the name of a section, and where its knobs move each pad's own values, that they do.
+pub(in crate::editor) fn show_title(painter: &Painter, rect: Rect, section: Section, controls: &Controls) {
+    let muted = controls.palette.muted;
+    let name = line(painter, rect, Align2::LEFT_CENTER, &section[0].section.to_uppercase(), SMALL, muted);
+    if section.iter().any(|info| controls.own(info).is_some()) {
+        let rest = rect.with_min_x(name.right() + GAP);
+        let says = fitting(painter, &[ADDED, "added to each pad", "added", ""], SMALL, rest.width());
+        line(painter, rest, Align2::LEFT_CENTER, says, SMALL, controls.palette.accent_text);
+    }
 }
 
 /// Whether a section has a large picture.

@@ -60,7 +60,7 @@ pub(super) fn show(painter: &Painter, rect: Rect, voices: u32, controls: &Contro
     }
     let below = area.with_min_y(area.top() + rows as f32 * height + 6.0);
     if below.height() > 30.0 {
-        let text = "The channels, and what each holds. With MPE, every note has a channel of its own: its bend, pressure and slide are \
+        let text = "The channels, and what each holds. With MPE, every note has a channel of its own: its bend, pressure and timbre are \
                     that note’s alone. A controller’s configuration message makes the zones; members bend by 48 semitones.";
         paragraph(painter, below, text, SMALL, palette.muted);
     }

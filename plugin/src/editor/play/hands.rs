@@ -1,4 +1,4 @@
-//! What the player's wheel, pressure, breath and slide move in the sound, in a line.
+//! What the player's wheel, pressure, breath and timbre move in the sound, in a line.
 
 use crate::editor::controls::Controls;
 use crate::editor::theme::SMALL;
@@ -8,7 +8,7 @@ use sprung::patch::routes::{Route, Routes, Source, amount_param};
 
 /// The controllers that hands and mouth have beside the keys, by the names that players have for them.
 const CONTROLLERS: [(Source, &str); 4] =
-    [(Source::Wheel, "Wheel"), (Source::Pressure, "Pressure"), (Source::Breath, "Breath"), (Source::Timbre, "Slide")];
+    [(Source::Wheel, "Wheel"), (Source::Pressure, "Pressure"), (Source::Breath, "Breath"), (Source::Timbre, "Timbre")];
 
 /// Said of a sound that they do not move.
 const NOTHING: &str = "Wheel and pressure move nothing yet: drag them to knobs, on Motion.";
@@ -43,10 +43,17 @@ fn sentence(routes: &Routes, source: Source, name: &str, is_on: impl Fn(usize) -
 
 #[cfg(test)]
 mod tests {
-    use super::{Route, Source, sentence};
+    use super::{CONTROLLERS, Route, Source, sentence};
     use sprung::params::Param;
     use sprung::patch::routes::Routes;
     use sprung::preset::Preset;
+
+    #[test]
+    fn controllers_have_one_name_everywhere() {
+        for (source, name) in CONTROLLERS {
+            assert_eq!(name.to_lowercase(), source.id());
+        }
+    }
 
     #[test]
     fn a_violin_is_pressed_with_the_bow() {

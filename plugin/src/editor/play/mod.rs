@@ -5,11 +5,12 @@ mod movers;
 pub(super) mod stage;
 mod things;
 
-use crate::editor::body::offer::offer_alone;
+use crate::editor::body::offer::offer_pad;
 use crate::editor::body::view::{BodyView, velocity};
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
+use crate::editor::pages::sections::ADDED;
 use crate::editor::routes::Ring;
 use crate::editor::routes::list::effects;
 use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, RADIUS, SMALL, TITLE_HEIGHT};
@@ -96,7 +97,7 @@ impl PlayPage {
             }
             message = changed.and_then(Result::err);
         } else {
-            offer_alone(ui, inner.with_min_x(inner.right() - right), shown, controls);
+            offer_pad(ui, inner.with_min_x(inner.right() - right), shown, controls);
         }
         let spaces = stage::show_spaces(ui, foot, controls);
         if shown.preset().is_some() {
@@ -134,8 +135,9 @@ impl PlayPage {
 fn knobs(ui: &mut Ui, rect: Rect, title: f32, shown: &Shown, controls: &mut Controls) {
     let palette = controls.palette;
     palette.paint_panel(ui.painter(), rect);
-    let named = |info: &&'static ParamInfo| shown.guide().macro_name(info.id).is_some();
-    let macros: Vec<(&ParamInfo, String)> = PARAMS
+    // Each sound of a kit has others.
+    let named = |info: &&'static ParamInfo| shown.preset().is_some() && shown.guide().macro_name(info.id).is_some();
+    let macros: Vec<(&'static ParamInfo, String)> = PARAMS
         .iter()
         .filter(named)
         .map(|info| (info, shown.guide().macro_name(info.id).unwrap_or_default().to_owned()))
@@ -143,9 +145,13 @@ fn knobs(ui: &mut Ui, rect: Rect, title: f32, shown: &Shown, controls: &mut Cont
     let has_space = controls.value(Param::Space.info()) > 0.0;
     let matters = |param: &Param| has_space || !matches!(param, Param::SpaceMix | Param::SpaceSize);
     let essentials = ESSENTIALS.into_iter().filter(|(param, _)| matters(param));
-    let essentials = essentials.map(|(param, name)| (param.info(), name.to_owned())).collect();
-    let groups: [(&str, Vec<_>); 3] =
-        [("MACROS", macros), ("ESSENTIALS", essentials), ("OUTPUT", vec![(Param::Gain.info(), "Gain".to_owned())])];
+    let essentials = essentials.map(|(param, name)| (param.info(), name.to_owned()));
+    let gain = (Param::Gain.info(), "Gain".to_owned());
+    // In a kit, apart from those that are the kit's own.
+    let (added, essentials): (Vec<_>, Vec<_>) = essentials.partition(|(info, _)| controls.own(info).is_some());
+    let (added, output) =
+        if added.is_empty() { (added, vec![gain]) } else { ([added, vec![gain]].concat(), Vec::new()) };
+    let groups = [("MACROS", macros), (ADDED, added), ("ESSENTIALS", essentials), ("OUTPUT", output)];
     let count: usize = groups.iter().map(|(_, knobs)| knobs.len()).sum();
     let gaps = groups.iter().filter(|(_, knobs)| !knobs.is_empty()).count() as f32 * 2.0 * GAP;
     let inside = rect.shrink(PADDING);

@@ -2,11 +2,12 @@
 
 use crate::editor::body::edit::BodyEdit;
 use crate::editor::body::face;
-use crate::editor::body::offer::offer;
+use crate::editor::body::offer::{TAKES, offer, suggestion};
 use crate::editor::body::origin::OriginShown;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{GAP, RADIUS, SMALL};
+use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::line;
 use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
@@ -31,7 +32,7 @@ const DISCS: [&str; 10] =
     ["bronze", "steel", "brass", "aluminium", "glass", "rosewood", "maple", "spruce", "porcelain", "nylon"];
 
 /// What a table of modes lacks here.
-const LACKS: &str = "Modes alone, without a material or a place to strike. Choose a shape:";
+const LACKS: &str = "Modes alone, without a material or a place to strike.";
 
 /// Columns of tiles, and of discs.
 const COLUMNS: [usize; 2] = [3, 5];
@@ -64,12 +65,12 @@ impl Things {
         } else {
             let model = model_field(ui, rect.with_max_y(rect.top() + 22.0), &origin, controls);
             let below = rect.with_min_y(rect.top() + 28.0).with_max_y(rect.top() + 50.0);
-            let offered = below.translate(vec2(0.0, 28.0));
-            let other = match origin {
-                Origin::Table => offer(ui, below.union(offered), LACKS, (&origin, family), controls),
-                _ => material_field(ui, below, &origin, controls),
-            };
-            model.or(other)?
+            let now = origin.body().map(|body| body.material.id);
+            let other = material_field(ui, below, now, &suggestion(&origin, family).1, controls);
+            let offers = matches!(origin, Origin::Table);
+            let below = below.translate(vec2(0.0, 28.0)).with_max_y(rect.bottom());
+            let made = offers.then(|| offer(ui, below, LACKS, (&origin, family), controls)).flatten();
+            model.or(other).or(made)?
         };
         Some(BodyEdit::make(&origin, changed, what, shown.loaded(), controls))
     }
@@ -114,19 +115,29 @@ impl Things {
         }
         picked = model_field(ui, next(20.0), origin, controls).or(picked);
         next(2.0);
-        line(ui.painter(), next(14.0), Align2::LEFT_CENTER, "What it is made of", SMALL, palette.muted);
-        let Some(body) = origin.body() else {
-            return offer(ui, next(80.0), LACKS, (origin, family), controls).or(picked);
-        };
+        // A table of modes has no material: to choose one is to make it the body as which it is drawn.
+        let (deed, suggested) = suggestion(origin, family);
+        if origin.body().is_some() {
+            line(ui.painter(), next(14.0), Align2::LEFT_CENTER, "What it is made of", SMALL, palette.muted);
+        } else {
+            let response = button(ui, next(20.0), &deed, &deed, Look::Main, palette);
+            if response.hovered() {
+                *controls.hint = Hint::new(&deed, "Of the material below that is clicked, or of the usual one.");
+            }
+            if response.clicked() {
+                picked = Some((suggested.clone(), deed));
+            }
+        }
+        let now = origin.body().map(|body| body.material.id);
         let pitch = rect.width() / discs as f32;
         let rows = next(2.0 * pitch);
         for (place, id) in DISCS.into_iter().enumerate() {
             let offset = vec2((place % discs) as f32 + 0.5, (place / discs) as f32 + 0.5) * pitch;
             let disc = Rect::from_center_size(rows.min + offset, vec2(pitch, pitch));
-            let is_now = body.material.id == id;
+            let is_now = now == Some(id);
             let response = choice(ui, disc, ("material", id), is_now);
             if response.hovered() {
-                *controls.hint = Hint::new(id, "Make it of this material.");
+                *controls.hint = Hint::new(id, if now.is_some() { "Make it of this material." } else { TAKES });
             }
             let radius = 0.36 * pitch;
             ui.painter().circle(disc.center(), radius, tint(id), Stroke::new(1.0, palette.line));
@@ -139,10 +150,10 @@ impl Things {
                 ui.painter().circle_stroke(disc.center(), radius + 2.5, edge(&response, is_now, controls));
             }
             if response.clicked() && !is_now {
-                picked = made_of(origin, id).or(picked);
+                picked = made_of(&suggested, id).or(picked);
             }
         }
-        material_field(ui, next(20.0), origin, controls).or(picked)
+        material_field(ui, next(20.0), now, &suggested, controls).or(picked)
     }
 }
 
@@ -185,9 +196,15 @@ fn model_field(ui: &Ui, rect: Rect, origin: &Origin, controls: &Controls) -> Opt
     Some((origin.with_model(false, Some(model)), format!("model {}", names[picked])))
 }
 
-/// The list of all materials.
-fn material_field(ui: &Ui, rect: Rect, origin: &Origin, controls: &Controls) -> Option<(Origin, String)> {
-    let now = origin.body()?.material.id.replace('_', " ");
+/// The list of all materials, of which the body gets one; a table of modes has none now.
+fn material_field(
+    ui: &Ui,
+    rect: Rect,
+    now: Option<&str>,
+    origin: &Origin,
+    controls: &Controls,
+) -> Option<(Origin, String)> {
+    let now = now.map_or("choose a material".to_owned(), |id| id.replace('_', " "));
     let names: Vec<String> = MATERIALS.iter().map(|material| material.id.replace('_', " ")).collect();
     let picked = field(ui, rect, "All materials", &now, &names, controls)?;
     made_of(origin, MATERIALS[picked].id)

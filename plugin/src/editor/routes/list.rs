@@ -64,7 +64,7 @@ pub(in crate::editor) fn show(
     let title = Rect::from_min_size(inner.min + vec2(0.0, 2.0), vec2(inner.width(), TITLE_HEIGHT - 2.0));
     let left = line(ui, title, "WHAT MOVES WHAT", SMALL, palette.muted) + GAP;
     let says = match (is_editable, patch.routes.iter().next()) {
-        (false, _) => "of the pad that was struck or chosen last: Load alone, on Kit, to change them",
+        (false, _) => "of the pad that was struck or chosen last: Edit, on Kit, to change them",
         (true, None) => "nothing yet: drag a source to a knob, or click a place below",
         (true, Some(_)) => "",
     };

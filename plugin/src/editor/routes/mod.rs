@@ -51,6 +51,10 @@ pub(super) struct Ring {
 
 impl Ring {
     pub(super) fn of(info: &ParamInfo, routes: &Routes, controls: &Controls) -> Self {
+        // Where the knob says by how much a value is moved, the value itself has no place on it.
+        if controls.own(info).is_some() {
+            return Self::default();
+        }
         let position = controls.position(info);
         let range = |(place, route): (usize, Route)| {
             let amount = controls.value(amount_param(place).info()) / 100.0;

@@ -279,6 +279,49 @@ fn what_is_made_of_a_factory_sound_is_ones_own_with_ones_own_tags() {
 }
 
 #[test]
+fn a_changed_sound_is_not_described_as_the_one_that_it_was_made_of() {
+    let mut stage = stage("Glass Marimba", SIZE, 1.0, Theme::Dark);
+    let library = Library::at(stage.folder.path());
+    let saved = |name: &str| -> Playable {
+        let entries = library.entries().into_iter().map(|entry| entry.playable.unwrap());
+        entries.into_iter().find(|own| own.name() == name).unwrap()
+    };
+    let factory = stage.params.state().playable;
+    let save = |stage: &mut Stage, name: &str| {
+        stage.button("Save");
+        stage.type_text(name);
+        stage.harness.key_press(Key::Enter);
+        stage.harness.run_steps(3);
+    };
+    save(&mut stage, "As It Is");
+    assert_eq!(saved("As It Is").comment(), factory.comment());
+    stage.button("Undo");
+    stage.tab("Play");
+    stage.harness.get_by_role_and_label(Role::RadioButton, "material: steel").click();
+    stage.harness.run_steps(3);
+    save(&mut stage, "Of Steel");
+    let own = saved("Of Steel");
+    assert_eq!((own.comment(), own.details()), ("Made from Glass Marimba.", ""));
+    assert!(own.tags().contains(&"metal".to_owned()) && !own.tags().contains(&"glass".to_owned()), "{:?}", own.tags());
+    assert_eq!(stage.params.state().playable.comment(), own.comment());
+    // What one has written oneself stays.
+    stage.button("Save");
+    stage.harness.get_by_role_and_label(Role::TextInput, "Description of the saved sound").focus();
+    stage.harness.run_steps(2);
+    stage.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    stage.harness.run_steps(1);
+    stage.type_text("Bars of steel.");
+    stage.harness.key_press(Key::Enter);
+    stage.harness.run_steps(2);
+    stage.harness.key_press(Key::Enter);
+    stage.harness.run_steps(3);
+    stage.harness.get_by_role_and_label(Role::RadioButton, "material: brass").click();
+    stage.harness.run_steps(3);
+    save(&mut stage, "Of Brass");
+    assert_eq!(saved("Of Brass").comment(), "Bars of steel.");
+}
+
+#[test]
 fn a_family_is_shown_whole_and_a_search_can_be_cleared() {
     let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
     let is_listed = |stage: &Stage, name: &str| stage.harness.query_by_role_and_label(Role::ListItem, name).is_some();

@@ -1,9 +1,9 @@
 //! The program's page of devices and ports.
 
-use super::pictures::{Stage, compare_page, finish, stage};
+use super::pictures::{Stage, compare, finish, stage};
 use crate::devices::{Chosen, Devices, Output};
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
-use egui::Role;
+use egui::{Key, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -31,18 +31,25 @@ fn devices() -> Devices {
 /// The page in a program that has published devices.
 fn page(size: [u32; 2], theme: Theme) -> Stage {
     let mut stage = stage("Marimba", size, 1.0, theme);
-    assert!(stage.harness.query_by_role_and_label(Role::Tab, "Devices").is_none(), "a host has its own");
+    stage.button("Menu");
+    assert!(stage.harness.query_by_label("Devices").is_none(), "a host has its own");
+    stage.harness.key_press(Key::Escape);
     stage.host.is_alone.store(true, Relaxed);
     stage.params.link().devices.show(devices());
     stage.harness.run_steps(3);
     assert!(!stage.params.link().devices.was_watched(), "nothing is looked for while another page is shown");
-    stage.harness.get_by_role_and_label(Role::Tab, "Devices").click();
-    stage.harness.run_steps(3);
+    stage.devices();
     assert!(stage.params.link().devices.was_watched());
     stage
 }
 
 impl Stage {
+    /// Opens the page of devices.
+    pub(super) fn devices(&mut self) {
+        self.button("Menu");
+        self.button("Devices");
+    }
+
     /// Picks from the list of the original devices.
     fn pick_device(&mut self, field: &str, name: &str) -> Option<Chosen> {
         self.params.link().devices.show(devices());
@@ -57,6 +64,17 @@ impl Stage {
         self.harness.run_steps(3);
         self.params.link().devices.take_request()
     }
+}
+
+#[test]
+fn devices_are_a_page_of_their_own_that_is_closed() {
+    let mut stage = page(SIZE, Theme::Dark);
+    assert!(stage.harness.query_by_label("Modes").is_none(), "no pictures of the sound are beside it");
+    stage.button("Close the devices");
+    assert!(stage.harness.query_by_label("Modes").is_some());
+    stage.devices();
+    stage.tab("Play");
+    assert!(stage.harness.query_by_label("Strike").is_some());
 }
 
 #[test]
@@ -102,7 +120,7 @@ fn pictures_of_devices_are_as_accepted() {
         (SIZE, Theme::Light, "devices-light"),
         (LEAST_SIZE, Theme::HighContrast, "devices-least"),
     ] {
-        compare_page(name, &mut page(size, theme).harness);
+        compare(name, &mut page(size, theme).harness);
     }
     finish();
 }

@@ -2,7 +2,7 @@
 
 use super::pictures::{Stage, facing, stage};
 use crate::devices::Devices;
-use crate::editor::theme::{SIZE, Theme};
+use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::window::Face;
 use crate::state::State;
 use egui::epaint::Shape;
@@ -10,6 +10,7 @@ use egui::{Key, Role};
 use egui_kittest::kittest::Queryable as _;
 use sprung::patch::routes::Routes;
 use sprung::preset::{Playable, Preset};
+use sprung_picture::Origin;
 use std::sync::atomic::Ordering::Relaxed;
 
 impl Stage {
@@ -56,6 +57,12 @@ fn a_search_without_a_result_shows_the_nearest_three_which_can_be_loaded() {
     stage.harness.key_press(Key::ArrowDown);
     stage.harness.run_steps(3);
     assert_eq!(stage.params.name(), "Marimba");
+    stage.button("Clear the search");
+    stage.type_text("qwzx");
+    assert!(stage.paints("No sound is like this") && stage.listed() == 0);
+    stage.button("Clear the search");
+    stage.type_text("rhodes");
+    assert!(stage.harness.query_by_role_and_label(Role::ListItem, "Electric Piano 1").is_some());
     for (category, says) in [("Favourites", "None yet: a click on the star"), ("Your own", "None yet: Save keeps")] {
         stage.button(&format!("Show {category}"));
         assert!(stage.paints(says) && stage.listed() == 0, "{category}");
@@ -63,7 +70,7 @@ fn a_search_without_a_result_shows_the_nearest_three_which_can_be_loaded() {
     let mut stage = facing(Face::Kit, "Acoustic Kit", SIZE, 1.0, Theme::Dark);
     stage.harness.get_by_label("Search for sounds").click();
     stage.harness.run_steps(2);
-    stage.type_text("acoustik");
+    stage.type_text("acoustik kick");
     assert!(stage.paints("No sound has all of this.") && stage.listed() == 3, "presets alone");
 }
 
@@ -90,9 +97,33 @@ fn what_has_no_body_to_change_is_offered_one() {
         if face == Face::Sound {
             stage.tab("Model");
         }
-        stage.button("Load High Q alone");
+        stage.button("Edit High Q");
         assert_eq!(stage.params.name(), "High Q");
     }
+}
+
+#[test]
+fn modes_alone_are_made_a_body_of_a_material_in_one_click() {
+    let made = |stage: &Stage| {
+        let origin = Origin::of(&stage.params.loaded().kit.sounds()[0].patch().modes);
+        origin.body().map(|body| (body.model.id(), body.material.id))
+    };
+    let mut stage = facing(Face::Play, "Marimba", SIZE, 1.0, Theme::Dark);
+    let before = stage.params.state();
+    assert!(!stage.paints("What it is made of") && made(&stage).is_none());
+    stage.harness.get_by_role_and_label(Role::RadioButton, "material: glass").click();
+    stage.harness.run_steps(3);
+    assert_eq!(made(&stage), Some(("marimba", "glass")));
+    assert!(stage.paints("What it is made of"));
+    stage.button("Undo");
+    assert!(stage.params.state() == before);
+    // Where there are no discs, the list does it.
+    let mut stage = facing(Face::Play, "Marimba", LEAST_SIZE, 1.0, Theme::Dark);
+    assert!(stage.harness.query_by_label("Make it a marimba").is_some());
+    stage.harness.get_by_role_and_label(Role::ComboBox, "All materials").click();
+    stage.harness.run_steps(3);
+    stage.button("glass");
+    assert_eq!(made(&stage), Some(("marimba", "glass")));
 }
 
 #[test]
@@ -106,12 +137,12 @@ fn pictures_of_nothing_and_empty_places_say_what_fills_them() {
         ("Voices", "Play a note: it gets a row"),
         ("Soundbox", "none: choose a type"),
         ("Space", "none: choose a type"),
-        ("Devices", "Nothing plays yet: choose an output"),
-        ("Devices", "No MIDI port is listed"),
     ] {
         stage.tab(tab);
         assert!(stage.paints(says), "{tab}: {says}");
     }
+    stage.devices();
+    assert!(stage.paints("Nothing plays yet: choose an output") && stage.paints("No MIDI port is listed"));
     let ports = vec!["Keys".to_owned()];
     stage.params.link().devices.show(Devices { ports, ..Devices::default() });
     stage.harness.run_steps(3);

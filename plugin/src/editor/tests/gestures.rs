@@ -215,13 +215,20 @@ fn only_what_changed_is_announced_when_a_sound_is_loaded() {
 #[test]
 fn two_versions_are_compared() {
     let mut stage = Stage::new();
-    stage.button("Copy to the other version");
+    stage.button("Copy A to B");
     let knob = stage.at("Mallet hardness");
     let before = stage.params.state();
+    assert!(stage.paints("A = B"));
     stage.drag(knob, vec2(0.0, -30.0), Modifiers::NONE);
     let after = stage.params.state();
+    assert!(stage.paints("A → B"), "they differ, and that is the way in which one is copied");
     stage.button("A or B");
     assert_eq!(stage.params.state(), before);
+    assert!(stage.paints("B → A"));
+    stage.button("A or B");
+    assert_eq!(stage.params.state(), after);
+    stage.button("Copy A to B");
+    assert!(stage.paints("A = B"));
     stage.button("A or B");
     assert_eq!(stage.params.state(), after);
 }

@@ -72,6 +72,12 @@ fn pictures_of_the_pads_are_as_accepted() {
         compare_small(&format!("pads-{}", theme.id()), 2, &mut at("Acoustic Kit", SIZE, theme).harness);
     }
     compare_small("pads-twice", 4, &mut facing(Face::Kit, "Acoustic Kit", SIZE, 2.0, Theme::Dark).harness);
+    compare_small("kit-knobs", 2, &mut facing(Face::Sound, "Acoustic Kit", SIZE, 1.0, Theme::Light).harness);
+    for (size, name) in [(SIZE, "pad-edited"), (LEAST_SIZE, "pad-edited-least")] {
+        let mut stage = at("Acoustic Kit", size, Theme::Dark);
+        stage.button("Edit this pad");
+        compare_small(name, 2, &mut stage.harness);
+    }
     compare_small("keys-of-a-preset", 2, &mut at("Marimba", SIZE, Theme::Dark).harness);
     finish();
 }
@@ -270,4 +276,110 @@ fn a_drag_ends_with_escape_and_nothing_sounds_on_when_another_sound_is_loaded() 
     band.passes(3);
     assert_eq!(band.stage.params.link().telemetry.keys(0), 0);
     band.press(kick, false);
+}
+
+#[test]
+fn a_pad_is_edited_and_put_back_and_each_is_one_step() {
+    // With the knobs of the kit moved, the sound is edited as it is heard.
+    let mut stage = at("Acoustic Kit", SIZE, Theme::Dark);
+    stage.params.knobs()[Param::Decay as usize].turn(0.7);
+    let hat = stage.place("F#2");
+    stage.drag(hat, hat - hat, Modifiers::NONE);
+    let kit = stage.params.state();
+    let (_, pad) = stage.pad(42).unwrap();
+    let heard = kit.clone().into_sound();
+    stage.button("Edit this pad");
+    assert_eq!(stage.params.name(), "Closed Hat");
+    assert!(stage.paints("pad F#2 of Acoustic Kit"));
+    let Playable::Kit(heard) = heard else { panic!("a kit") };
+    let alone = stage.params.state();
+    assert_eq!(alone.values, heard.sounds[pad.sound].1.patch.values);
+    // A change of the sound, and one that loads it anew.
+    let knob = stage.at("Mallet hardness");
+    stage.drag(knob, vec2(0.0, -22.0), Modifiers::NONE);
+    stage.tab("Play");
+    stage.button("Noise alone");
+    let changed = stage.params.state();
+    assert!(changed.values != alone.values && changed.pad.is_some());
+    // It is kept in the project.
+    let read = State::parse(&changed.to_json()).unwrap();
+    assert_eq!((read.state, read.complaints), (changed.clone(), Vec::new()));
+    stage.button("Put back");
+    let after = stage.kit();
+    let Playable::Preset(expected) = &changed.playable else { panic!("a preset") };
+    assert_eq!(stage.pad(42).map(|(_, pad)| pad), Some(pad.clone()), "the pad is as it was");
+    for (place, ((_, before), (_, now))) in heard.sounds.iter().zip(&after.sounds).enumerate() {
+        assert_eq!(now, if place == pad.sound { expected } else { before });
+    }
+    assert!(stage.params.pad().is_none() && stage.paints("Closed hat"), "the kit is shown, and the pad chosen");
+    for (steps, before) in [(1, &changed), (2, &alone), (1, &kit)] {
+        for _ in 0..steps {
+            stage.button("Undo");
+        }
+        assert!(stage.params.state() == *before);
+    }
+}
+
+#[test]
+fn a_pad_that_shares_its_sound_is_edited_by_itself() {
+    let mut stage = at("Kick", SIZE, Theme::Dark);
+    stage.button("Make a kit of this sound");
+    let (kick, aim) = (stage.place("C2"), stage.place("D2"));
+    stage.drag(kick, aim - kick, Modifiers::COMMAND);
+    stage.button("Edit this pad");
+    stage.tab("Body");
+    let knob = stage.at("Decay");
+    stage.drag(knob, vec2(0.0, -22.0), Modifiers::NONE);
+    let changed = stage.params.state().values;
+    // Another sound is none of the pad's.
+    stage.button("Next sound");
+    assert!(stage.harness.query_by_label("Put back").is_none());
+    stage.button("Undo");
+    stage.button("Put back");
+    let kit = stage.kit();
+    let values = |key: u8| kit.sounds[kit.pads.iter().find(|(own, _)| *own == key).unwrap().1.sound].1.patch.values;
+    assert_eq!((values(38), kit.sounds.len()), (changed, 2));
+    assert_ne!(values(36), changed);
+}
+
+#[test]
+fn the_knobs_of_a_kit_say_what_they_add_and_not_a_value() {
+    for face in [Face::Play, Face::Sound, Face::Motion] {
+        let stage = facing(face, "Acoustic Kit", SIZE, 1.0, Theme::Dark);
+        assert!(stage.paints("added to what each pad has"), "{face:?}");
+    }
+    let mut stage = facing(Face::Play, "Acoustic Kit", SIZE, 1.0, Theme::Dark);
+    assert!(stage.paints("× 1") && stage.paints("±0 dB") && !stage.paints("1 s"));
+    assert!(stage.paints("ESSENTIALS") && !stage.paints("OUTPUT"), "the space is the kit’s own");
+    let type_value = |stage: &mut Stage, text: &str| {
+        stage.harness.get_by_label("Type Decay").click();
+        stage.harness.run_steps(2);
+        stage.type_text(text);
+        stage.harness.key_press(Key::Enter);
+        stage.harness.run_steps(3);
+    };
+    type_value(&mut stage, "1.5");
+    assert_eq!(stage.params.state().values.get(Param::Decay), 1.5 * Param::Decay.info().default);
+    assert!(stage.paints("× 1.5"));
+    type_value(&mut stage, "3 s");
+    assert!(stage.harness.query_by_label_contains("expected from × 0.005 to × 60").is_some());
+    // One sound alone is no offset: its knobs have its values.
+    let mut stage = facing(Face::Kit, "Kick", SIZE, 1.0, Theme::Dark);
+    stage.button("Make a kit of this sound");
+    stage.tab("Sound");
+    assert!(!stage.paints("added to"));
+}
+
+#[test]
+fn the_macros_of_a_pad_have_its_names() {
+    let mut stage = at("Acoustic Kit", SIZE, Theme::Dark);
+    for (key, sound) in [("C2", "Kick"), ("F#2", "Closed Hat")] {
+        let pad = stage.place(key);
+        stage.drag(pad, vec2(0.0, 0.0), Modifiers::NONE);
+        stage.tab("Motion");
+        let Ok(Playable::Preset(preset)) = Playable::find(sound) else { panic!("a preset") };
+        let name = &preset.guide.macros[0];
+        assert!(stage.harness.query_by_label(&format!("Source {name}")).is_some(), "{sound}: {name}");
+        stage.tab("Kit");
+    }
 }

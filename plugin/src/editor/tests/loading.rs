@@ -41,7 +41,7 @@ impl Stage {
 #[test]
 fn undo_redo_and_the_other_version_do_not_cross_a_state_that_the_host_loads() {
     let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
-    stage.button("Copy to the other version");
+    stage.button("Copy A to B");
     stage.button("Next sound");
     stage.button("Next sound");
     stage.button("Undo");

@@ -170,7 +170,7 @@ fn an_oscillator_is_dragged_to_another_start_and_faded_in() {
 fn the_buttons_of_the_header_do_not_overlap() {
     for width in (640..=1100).step_by(20) {
         let stage = at("Church Bell", [width, 400], Theme::Dark);
-        let names = ["Browse", "Save", "Undo", "Redo", "A or B", "Copy to the other version", "Menu"];
+        let names = ["Browse", "Save", "Undo", "Redo", "A or B", "Copy A to B", "Menu"];
         let places = names.map(|name| stage.harness.get_by_label(name).rect());
         assert!(places.windows(2).all(|pair| pair[0].right() < pair[1].left()), "{width}: {places:?}");
         assert!(places[6].right() <= width as f32, "{width}: {places:?}");

@@ -2,7 +2,7 @@
 
 use super::dropped::{Dropped, asset};
 use super::fake_host::Call;
-use super::pictures::{compare, compare_page, finish, stage};
+use super::pictures::{Stage, compare, compare_page, finish, stage};
 use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use egui::{Key, Role, vec2};
@@ -136,6 +136,29 @@ fn every_page_of_the_manual_can_be_shown() {
             assert!(right <= size[0] as f32, "{name} wraps: {right}");
         }
     }
+}
+
+#[test]
+fn the_manual_is_searched_and_opened_where_the_words_are() {
+    let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    stage.harness.get_by_role_and_label(Role::Tab, "?").click();
+    stage.harness.run_steps(3);
+    assert!(stage.paints("Begin here") && stage.paints("Playing"), "the contents have groups");
+    stage.harness.get_by_label("Search the manual").focus();
+    stage.harness.run_steps(2);
+    stage.type_text("bohlen-pierce");
+    stage.harness.run_steps(3);
+    let is_listed = |stage: &Stage, page: &str| stage.harness.query_by_label(&format!("Manual: {page}")).is_some();
+    assert!(is_listed(&stage, "window") && !is_listed(&stage, "exciters"));
+    let visible = |stage: &Stage, words: &str| {
+        let labels = stage.harness.query_all_by_label_contains(words);
+        labels.map(|label| label.rect()).any(|rect| rect.top() > 40.0 && rect.top() < 560.0)
+    };
+    assert!(visible(&stage, "Bohlen-Pierce"), "the text is scrolled to it");
+    stage.type_text(" xyzzy");
+    assert!(stage.paints("No page has all of these words."));
+    stage.button("Clear the search of the manual");
+    assert!(is_listed(&stage, "exciters"));
 }
 
 #[test]

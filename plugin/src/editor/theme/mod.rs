@@ -115,6 +115,11 @@ impl Palette {
         painter.rect(rect, RADIUS, self.panel, Stroke::new(1.0, self.outline), StrokeKind::Inside);
     }
 
+    /// The edge of what is on the ground and empty, such as a meter in silence.
+    pub(super) fn empty_edge(&self) -> Color32 {
+        self.ground.lerp_to_gamma(self.muted, 0.5)
+    }
+
     /// All combinations of text colour and ground in use.
     #[cfg(test)]
     fn pairs(&self) -> Vec<(Color32, Color32)> {

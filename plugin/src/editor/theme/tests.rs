@@ -48,6 +48,15 @@ fn every_mark_can_be_seen_on_its_ground() {
     }
 }
 
+/// Less than of a mark, since nothing is there.
+#[test]
+fn what_is_empty_can_be_seen() {
+    for theme in Theme::ALL {
+        let found = contrast(theme.palette().empty_edge(), theme.palette().ground);
+        assert!((1.8..4.5).contains(&found), "{}: {found:.2}", theme.name());
+    }
+}
+
 /// Colours in linear light as somebody without one kind of cones sees them: without those for red and for green (Viénot, Brettel
 /// and Mollon 1999).
 const WITHOUT: [[[f64; 3]; 3]; 2] = [

@@ -2,7 +2,7 @@
 
 use super::knob::{self, keys, wheel};
 use super::text::line;
-use crate::editor::controls::{Controls, Hint};
+use crate::editor::controls::Controls;
 use crate::editor::theme::{KNOB, Palette, SMALL};
 use crate::editor::widgets::knob::{face, menu};
 use egui::{
@@ -21,7 +21,10 @@ pub(crate) fn show(ui: &mut Ui, cell: Rect, info: &'static ParamInfo, name: &str
     let value = controls.text(info);
     let is_default = controls.value(info) == info.default;
     let field = Field { id: knob::id(info), name: info.name, value: &value, is_default };
-    let (response, picked) = field.show(ui, rect, info.choices, controls.palette);
+    // In a kit, how far each pad's own choice goes on.
+    let ways: Vec<String> = (0..info.choices.len()).map(|place| controls.written(info, place as f32)).collect();
+    let ways: Vec<&str> = ways.iter().map(String::as_str).collect();
+    let (response, picked) = field.show(ui, rect, &ways, controls.palette);
     wheel(ui, &response, info, controls);
     keys(ui, &response, info, controls);
     if let Some(place) = picked {
@@ -30,7 +33,7 @@ pub(crate) fn show(ui: &mut Ui, cell: Rect, info: &'static ParamInfo, name: &str
     response.context_menu(|ui| menu::show(ui, info, controls));
     let (mark, said) = controls.mark(info);
     if response.hovered() {
-        *controls.hint = Hint::new(format!("{} {value}{said}", info.name), info.help);
+        controls.explain(format!("{} {value}{said}", info.name), info);
     }
     face::paint_mark(ui.painter(), rect.center_bottom(), mark.as_ref(), controls.palette);
     line(ui.painter(), knob::name_rect(cell), Align2::CENTER_CENTER, name, SMALL, controls.palette.text);

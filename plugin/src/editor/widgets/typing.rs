@@ -31,7 +31,7 @@ pub(super) fn typed(ui: &mut Ui, rect: Rect, field: Id, info: &'static ParamInfo
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             return true;
         }
-        match info.parse(&typing.text) {
+        match controls.read(info, &typing.text) {
             Ok(value) if value == controls.value(info) => return true,
             Ok(value) => {
                 controls.set(info, value);

@@ -13,6 +13,9 @@ use egui::{Align2, Id, Popup, PopupCloseBehavior, Rect, Role, Sense, Ui, WidgetI
 use nice_plug_core::context::PluginApi;
 use std::collections::BTreeSet;
 
+/// Width of the button that puts a sound back to its pad.
+const PUT: f32 = 58.0;
+
 /// What the window shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::editor) enum Face {
@@ -42,6 +45,8 @@ pub(super) enum Request {
     Show(Face),
     /// Load the preset at this distance in the list.
     Step(isize),
+    /// Put the sound back to its pad.
+    PutBack,
     Browse,
     Save,
     Undo,
@@ -63,11 +68,15 @@ pub(super) enum Request {
 pub(super) struct Header<'a> {
     pub(super) name: &'a str,
     pub(super) words: &'a str,
+    /// The pad from which the sound was taken, in words.
+    pub(super) pad: Option<&'a str>,
     pub(super) is_changed: bool,
     pub(super) is_browsing: bool,
     pub(super) face: Face,
     /// Whether the second version is shown.
     pub(super) is_b: bool,
+    /// Whether the two versions differ.
+    pub(super) versions_differ: bool,
     pub(super) view: View,
     /// Width and height of the screen at 100 %, if they are known.
     pub(super) screen: Option<[f64; 2]>,
@@ -109,6 +118,16 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
     let enabled = |name: &Option<String>| if name.is_some() { Look::Plain } else { Look::Disabled };
     let on = |is_on: bool| if is_on { Look::On } else { Look::Off };
     let shrunk = |wide: f32| if is_narrow { wide - 8.0 } else { wide };
+    let [copies, copy_name] = match (header.versions_differ, header.is_b) {
+        (true, false) => ["A → B", "Copy A to B"],
+        (true, true) => ["B → A", "Copy B to A"],
+        (false, false) => ["A = B", "Copy A to B"],
+        (false, true) => ["A = B", "Copy B to A"],
+    };
+    let copy_help = match header.versions_differ {
+        true => "The two versions differ: make the other one a copy of this one.",
+        false => "The two versions are alike: there is nothing to copy.",
+    };
     let buttons = [
         (
             "Browse",
@@ -127,16 +146,13 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
             26.0,
             on(header.is_b),
             Request::Swap,
-            "Two versions of the sound to compare: go to the other one.",
+            if header.versions_differ {
+                "Two versions of the sound, which differ: go to the other one."
+            } else {
+                "Two versions of the sound, which are alike: go to the other one, and change it."
+            },
         ),
-        (
-            "Copy",
-            "Copy to the other version",
-            shrunk(46.0),
-            Look::Plain,
-            Request::Copy,
-            "Make the other version a copy of this one.",
-        ),
+        (copies, copy_name, shrunk(46.0), Look::Plain, Request::Copy, copy_help),
     ];
     for (text, name, width, look, wanted, help) in buttons {
         let response = button(ui, next(width), text, name, look, palette);
@@ -183,6 +199,16 @@ fn name_field(ui: &Ui, rect: Rect, header: &Header, is_narrow: bool, controls: &
     let mut request = response.clicked().then_some(Request::Browse);
     let menu = Popup::context_menu(&response).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     menu.show(|ui| request = request.or(variation::menu(ui, header.locked).map(Request::Variation)));
+    let put = Rect::from_min_max(pos2(inside.right() - PUT, rect.top() + 3.0), inside.max - vec2(0.0, 3.0));
+    if let Some(pad) = header.pad {
+        let response = button(ui, put, "Put back", "Put back", Look::Main, palette);
+        if response.hovered() {
+            *controls.hint = Hint::new("Put back", format!("Returns this sound to {pad}, and shows the kit."));
+        }
+        if response.clicked() {
+            request = Some(Request::PutBack);
+        }
+    }
     if button(ui, previous, "‹", "Previous sound", Look::Plain, palette).clicked() {
         request = Some(Request::Step(-1));
     }
@@ -193,10 +219,11 @@ fn name_field(ui: &Ui, rect: Rect, header: &Header, is_narrow: bool, controls: &
         *controls.hint = Hint::new(header.name, format!("{}   right click: randomise, mutate, locks", header.words));
     }
     let name = format!("{}{}", header.name, if header.is_changed { " *" } else { "" });
-    let name = line(ui.painter(), inside, Align2::LEFT_CENTER, &name, TEXT + 1.5, palette.text);
+    let room = if header.pad.is_some() { inside.with_max_x(put.left() - 4.0) } else { inside };
+    let name = line(ui.painter(), room, Align2::LEFT_CENTER, &name, TEXT + 1.5, palette.text);
     if !is_narrow {
-        let rest = Rect::from_min_max(pos2(name.right() + 12.0, inside.top()), inside.max);
-        line(ui.painter(), rest, Align2::RIGHT_CENTER, header.words, SMALL, palette.muted);
+        let rest = room.with_min_x(name.right() + 12.0);
+        line(ui.painter(), rest, Align2::RIGHT_CENTER, header.pad.unwrap_or(header.words), SMALL, palette.muted);
     }
     request
 }

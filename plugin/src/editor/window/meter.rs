@@ -1,7 +1,7 @@
 //! The level of the sound, as a bar for each channel.
 
 use crate::editor::theme::Palette;
-use egui::{Painter, Rect, pos2, vec2};
+use egui::{Painter, Rect, Stroke, StrokeKind, pos2, vec2};
 use sprung::units::db_from_gain;
 
 /// Decibels below full scale that the bars show.
@@ -51,7 +51,7 @@ pub(super) fn paint(painter: &Painter, rect: Rect, levels: [f32; 2], lowered: f3
     for (level, offset) in levels.into_iter().zip([-4.5, 4.5]) {
         let centre = pos2(rect.center().x, rect.center().y + offset);
         let bar = Rect::from_center_size(centre, vec2(rect.width(), 6.0));
-        painter.rect_filled(bar, 3.0, palette.raised);
+        painter.rect(bar, 3.0, palette.raised, Stroke::new(1.0, palette.empty_edge()), StrokeKind::Inside);
         let colour = if level > 1.0 { palette.warning } else { palette.level };
         painter.rect_filled(bar.with_max_x(bar.left() + bar.width() * level.clamp(0.0, 1.0)), 3.0, colour);
         if level > 1.0 {

@@ -8,12 +8,14 @@ mod reach;
 mod requests;
 mod status;
 mod variation;
+mod versions;
 
 use crate::editor::binding;
 use crate::editor::browser::Browser;
 use crate::editor::controls::history::History;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, FRAME, Interaction, Said};
+use crate::editor::devices;
 use crate::editor::displays::Displays;
 use crate::editor::drops;
 use crate::editor::drops::fitting::Fitting;
@@ -32,7 +34,6 @@ use crate::editor::routes::{carry, learn};
 use crate::editor::theme::layout::Layout;
 use crate::editor::theme::{Theme, ZOOMS, install_fonts};
 use crate::params::SprungParams;
-use crate::state::State;
 use egui::{Event, Key, Modifiers, Ui};
 pub(super) use header::Face;
 use header::{Header, Request};
@@ -46,6 +47,7 @@ use status::{Load, StatusLine};
 use std::collections::BTreeSet;
 use std::hash::{BuildHasher as _, RandomState};
 use std::sync::Arc;
+use versions::Versions;
 
 /// Longest time in seconds by which moving pictures go on in one pass: after a pause they go on where they were.
 const LONGEST: f32 = 0.25;
@@ -56,6 +58,8 @@ enum Over {
     Browser,
     Manual,
     Files,
+    /// The program's devices.
+    Devices,
 }
 
 /// An open window.
@@ -88,9 +92,7 @@ pub(super) struct Window {
     over: Option<Over>,
     /// What was shown before the list of files.
     under: Option<Over>,
-    /// The other one of the two versions of the sound, and whether it is changed ([`History::is_changed`]).
-    other: Option<(State, bool)>,
-    is_b: bool,
+    versions: Versions,
     /// The context of a real window, and the zoom that it has, or will have with the first pass.
     context: Option<egui::Context>,
     zoom: f32,
@@ -151,8 +153,7 @@ impl Window {
             picker: Picker::default(),
             over: None,
             under: None,
-            other: None,
-            is_b: false,
+            versions: Versions::default(),
             context: None,
             zoom,
             screen: None,
@@ -214,9 +215,10 @@ impl Window {
         let has_moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO);
         self.interaction.is_scrolling &= !has_moved;
         let mut hint = None;
-        let name = params.name();
+        let (name, pad) = (params.name(), params.pad().map(|pad| pad.name()));
         let mut controls = Controls {
             params: &params,
+            moved: self.shown.one_of_several(),
             host,
             palette,
             interaction: &mut self.interaction,
@@ -228,10 +230,12 @@ impl Window {
         let header = Header {
             name: &name,
             words: &self.shown.words(),
+            pad: pad.as_deref(),
             is_changed: controls.history.is_changed(),
             is_browsing: self.over == Some(Over::Browser),
             face: self.face,
-            is_b: self.is_b,
+            is_b: self.versions.is_b,
+            versions_differ: self.versions.differ(&params),
             view,
             screen: self.screen,
             locked: &self.locked,
@@ -268,7 +272,12 @@ impl Window {
                 }
             }
             Some(Over::Manual) => {
-                if self.manual.show(ui, layout.page(), palette) {
+                if self.manual.show(ui, layout.page(), &mut controls) {
+                    self.over = None;
+                }
+            }
+            Some(Over::Devices) => {
+                if devices::show(ui, layout.page(), &mut controls) {
                     self.over = None;
                 }
             }
@@ -296,7 +305,10 @@ impl Window {
             }
             None if self.face == Face::Kit => {
                 let (page, others) = (layout.page(), (down, &mut self.browser));
-                reads = self.kit.show(ui, page, &mut self.shown, others, &mut controls).is_some();
+                match self.kit.show(ui, page, &mut self.shown, others, &mut controls) {
+                    Some(pages::Request::Sound) => self.face = Face::Sound,
+                    request => reads = request.is_some(),
+                }
             }
             None => {
                 self.modes.show(ui, layout.modes, &self.shown, &energies, &mut controls);
@@ -304,7 +316,7 @@ impl Window {
                 match self.pages.show(ui, &layout, &self.shown, (down, voices), &mut controls) {
                     Some(pages::Request::Manual) => reads = true,
                     Some(pages::Request::Say(message)) => self.news = Some(message),
-                    None => {}
+                    Some(pages::Request::Sound) | None => {}
                 }
             }
         }
@@ -393,7 +405,7 @@ impl Window {
     fn follow_loads(&mut self) {
         let loads = self.params.loads();
         if std::mem::replace(&mut self.loads, loads) != loads {
-            (self.history, self.other, self.is_b) = (History::default(), None, false);
+            (self.history, self.versions) = (History::default(), Versions::default());
             self.interaction.switched_off.clear();
             self.news = Some(Ok(String::new()));
         }

@@ -4,9 +4,10 @@ use super::header::{Face, Request};
 use super::variation::{Variation, VariationRequest};
 use super::{Over, Window, topic};
 use crate::editor::browser::Aim;
-use crate::editor::controls::files::load;
-use crate::editor::controls::history::{History, restore};
+use crate::editor::controls::files::load_changed;
+use crate::editor::controls::history::History;
 use crate::editor::host::extent;
+use crate::editor::kit::edit::put_back;
 use crate::params::SprungParams;
 use crate::state::View;
 use egui::Ui;
@@ -33,7 +34,7 @@ impl Window {
             Some(varied) => {
                 self.news = Some(Ok(String::new()));
                 self.history.begin(&self.params);
-                load(Playable::Preset(varied), &self.params, host);
+                load_changed(Playable::Preset(varied), &self.params, host);
                 self.history.end(variation.name(), &self.params);
             }
             None => self.news = Some(Err("every variation that was tried is silent: unlock more sections".to_owned())),
@@ -51,14 +52,19 @@ impl Window {
         self.news = told.map(Ok);
         let now = (self.params.state(), self.history.is_changed());
         if go(&mut self.history, &self.params, host) {
-            self.other = Some(now);
-            self.is_b = !self.is_b;
+            self.versions.have_swapped(now);
         }
     }
 
     pub(super) fn carry_out(&mut self, request: Request, ui: &Ui, host: &GuiContext) {
         match request {
             Request::Show(face) => self.turn_to(face),
+            Request::PutBack => {
+                if let Some(key) = put_back(&mut self.history, &self.params, host) {
+                    self.turn_to(Face::Kit);
+                    self.kit.choose(key);
+                }
+            }
             Request::Browse | Request::Save => {
                 let closes = self.over == Some(Over::Browser) && request == Request::Browse;
                 self.over = (!closes).then_some(Over::Browser);
@@ -82,31 +88,17 @@ impl Window {
                 self.manual.open(topic(self.over, self.face, &self.pages));
                 self.over = Some(Over::Manual);
             }
-            Request::Devices => {
-                self.turn_to(Face::Sound);
-                self.pages.show_devices();
-            }
+            Request::Devices => self.over = Some(Over::Devices),
             Request::Theme(theme) => self.params.set_view(|view| view.theme = theme),
             Request::Step(places) => self.step(places, host),
-            Request::Swap => {
-                self.history.begin(&self.params);
-                let now = (self.params.state(), self.history.is_changed());
-                let mut is_changed = now.1;
-                if let Some((other, other_is_changed)) = self.other.replace(now) {
-                    restore(other, &self.params, host);
-                    is_changed = other_is_changed;
-                }
-                self.is_b = !self.is_b;
-                let name = if self.is_b { "version B" } else { "version A" };
-                self.history.end_swap(name, is_changed, &self.params);
-            }
+            Request::Swap => self.versions.swap(&mut self.history, &self.params, host),
             Request::Variation(VariationRequest::Lock(section)) => {
                 if !self.locked.remove(section) {
                     self.locked.insert(section);
                 }
             }
             Request::Variation(VariationRequest::Vary(variation)) => self.vary(variation, host),
-            Request::Copy => self.other = Some((self.params.state(), self.history.is_changed())),
+            Request::Copy => self.versions.copy((self.params.state(), self.history.is_changed())),
         }
     }
 }

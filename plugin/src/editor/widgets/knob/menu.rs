@@ -20,7 +20,7 @@ pub(crate) fn show(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
         type_value(info, controls);
         ui.close();
     }
-    if ui.button(format!("Reset to {}", info.format(info.default))).clicked() {
+    if ui.button(format!("Reset to {}", controls.written(info, info.default))).clicked() {
         controls.set(info, info.default);
         ui.close();
     }

@@ -5,7 +5,7 @@ pub(super) mod menu;
 
 use super::text::line;
 use super::typing::{type_value, typed};
-use crate::editor::controls::{Controls, Hint};
+use crate::editor::controls::Controls;
 use crate::editor::routes::{Ring, carry};
 use crate::editor::theme::{KNOB, SMALL};
 use crate::marks::Mark;
@@ -92,7 +92,7 @@ fn turn(ui: &Ui, turned: Rect, value: Rect, travel: f32, info: &'static ParamInf
     if is_hovered {
         let newest = controls.modulated(info).next();
         let now = newest.map_or(String::new(), |value| format!(" › {}", info.format(value)));
-        *controls.hint = Hint::new(format!("{} {text}{now}{said}", info.name), info.help);
+        controls.explain(format!("{} {text}{now}{said}", info.name), info);
     }
     Turned { text, mark, is_hovered, is_focused: response.has_focus() }
 }

@@ -3,6 +3,7 @@
 use crate::devices::{Chosen, Devices};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{GAP, PADDING, SMALL};
+use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::{line, paragraph};
 use egui::{Align2, Id, Rect, Ui, pos2, vec2};
@@ -51,11 +52,11 @@ impl<T: PartialEq + Clone> Choices<T> {
     }
 }
 
-/// Shows the page.
-pub(super) fn show(ui: &Ui, rect: Rect, controls: &mut Controls) {
+/// Shows the page. Returns whether the user closes it.
+pub(super) fn show(ui: &Ui, rect: Rect, controls: &mut Controls) -> bool {
     let palette = controls.palette;
     palette.paint_panel(ui.painter(), rect);
-    let inner = rect.shrink(PADDING);
+    let inner = rect.shrink(2.0 * PADDING);
     let devices = controls.params.link().devices.look();
     let share = (inner.width() - 2.0 * GAP) / (COLUMNS[0] + COLUMNS[1]);
     let [wide, narrow] = COLUMNS.map(|width| (width * share).min(width));
@@ -101,6 +102,8 @@ pub(super) fn show(ui: &Ui, rect: Rect, controls: &mut Controls) {
         let keys = if devices.ports.is_empty() { NO_PORTS } else { "" };
         paragraph(ui.painter(), below, &format!("{keys}{ABOUT}"), SMALL, palette.muted);
     }
+    let close = Rect::from_min_size(inner.left_bottom() - vec2(0.0, FIELD), vec2(NAMES, FIELD));
+    button(ui, close, "Close", "Close the devices", Look::Plain, palette).clicked()
 }
 
 const OUTPUT: [&str; 2] = ["Output", "The sound device to play on"];
