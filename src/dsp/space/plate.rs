@@ -15,10 +15,10 @@ use std::f64::consts::PI;
 /// ```
 /// use sprung::internals::space::{Decay, ModalReverb, Plate, Resonator};
 ///
-/// let sheet = Plate::default().modes();
+/// let sheet = Plate::default().modes().leak();
 /// assert!(sheet.len() > 12_900, "every mode up to 10 kHz");
 ///
-/// let mut reverb = ModalReverb::new(Resonator::new(&sheet, Decay { low: 3.0, high: 1.0 }, 48_000.0));
+/// let mut reverb = ModalReverb::new(Resonator::new(sheet, Decay { low: 3.0, high: 1.0 }, 48_000.0));
 /// reverb.set_mix(0.3);
 /// reverb.reset();
 /// let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);

@@ -16,7 +16,7 @@ use std::f64::consts::FRAC_PI_2;
 /// use sprung::internals::space::{Decay, ModalReverb, Resonator, Strings};
 ///
 /// let chord = Strings::new([110.0, 165.0, 220.0, 277.18]);
-/// let mut strings = ModalReverb::new(Resonator::new(&chord.modes(), Decay { low: 6.0, high: 2.0 }, 48_000.0));
+/// let mut strings = ModalReverb::new(Resonator::new(chord.modes().leak(), Decay { low: 6.0, high: 2.0 }, 48_000.0));
 /// strings.set_levels(1.0, 0.1);
 /// strings.reset();
 /// let (mut left, mut right) = ([0.0; 64], [0.0; 64]);
