@@ -22,19 +22,15 @@ const MATERIALS: [(&[&str], &str); 3] = [
     (&["glass"], "glass"),
 ];
 
-/// A preset's own tags, without those of materials and movers that its body and knobs have given up for others.
-pub(super) fn true_tags(preset: &Preset) -> Vec<String> {
-    let (traits, modes) = (traits(preset), &preset.patch.modes);
-    let body = body_of_modes(modes).or_else(|| pair_of_modes(modes).map(|pair| pair.first));
-    let of = |id| MATERIALS.iter().find(|(ids, _)| ids.contains(&id)).map(|(_, tag)| *tag);
-    let material = body.and_then(|body| of(body.material.id));
-    let is_mover = |tag: &str| STRIKES.iter().chain(&DRIVERS).any(|(_, mover)| *mover == tag);
+/// The tags of a preset that was made from another, without those which were true of that and are not any more.
+pub(super) fn true_tags(preset: &Preset, other: &Preset) -> Vec<String> {
+    let ([now, before], [new_material, old_material]) = ([preset, other].map(traits), [preset, other].map(material));
     let is_material = |tag: &str| MATERIALS.iter().any(|(_, material)| *material == tag);
     let mut tags = Vec::new();
-    for tag in &preset.tags {
-        let tag = match material {
-            Some(now) if is_material(tag) => now,
-            _ if is_mover(tag) && !traits.contains(&tag.as_str()) => continue,
+    for tag in preset.tags.iter().map(String::as_str) {
+        let tag = match new_material {
+            Some(new) if is_material(tag) && new_material != old_material => new,
+            _ if before.contains(&tag) && !now.contains(&tag) => continue,
             _ => tag,
         };
         if !tags.iter().any(|other| other == tag) {
@@ -42,6 +38,13 @@ pub(super) fn true_tags(preset: &Preset) -> Vec<String> {
         }
     }
     tags
+}
+
+/// The tag of what a preset's body is made of, if it has a body.
+fn material(preset: &Preset) -> Option<&'static str> {
+    let modes = &preset.patch.modes;
+    let id = body_of_modes(modes).or_else(|| pair_of_modes(modes).map(|pair| pair.first))?.material.id;
+    MATERIALS.iter().find(|(ids, _)| ids.contains(&id)).map(|(_, tag)| *tag)
 }
 
 /// The tags of a preset that follow from its knobs.

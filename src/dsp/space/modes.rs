@@ -29,7 +29,8 @@ pub struct BodyMode {
 #[derive(Clone, Debug)]
 pub struct ModeSet {
     modes: Vec<BodyMode>,
-    /// A number for each mode, and some more, so that rows can be read by blocks from any mode on. Frequencies in Hz:
+    // Rows of a number for each mode, and some more, so that they can be read by blocks from any mode on.
+    /// Frequencies in Hz.
     pub(super) frequencies: Vec<f64>,
     /// Positions between low and high frequencies.
     pub(super) ways: Vec<f32>,
@@ -81,7 +82,8 @@ impl ModeSet {
         &NONE
     }
 
-    /// The same for as long as the process runs, as a [`super::Resonator`] wants it.
+    /// The same for as long as the process runs, as a [`super::Resonator`] wants it: its memory is never freed. For tests and benches; the
+    /// instrument's own bodies are statics.
     pub fn leak(self) -> &'static Self {
         Box::leak(Box::new(self))
     }

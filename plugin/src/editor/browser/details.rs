@@ -35,7 +35,9 @@ struct About {
     author: String,
     /// With commas between them.
     tags: String,
+    /// The comment, and as the field has it: in one line.
     comment: String,
+    line: String,
     details: String,
     /// The sound that they were proposed for.
     loaded: Arc<Loaded>,
@@ -50,18 +52,25 @@ impl About {
         let author = Some(sound.author()).filter(|author| *author != factory).unwrap_or_default();
         let [comment, details] = match made_from(&sound) {
             Some(name) => [format!("Made from {name}."), String::new()],
-            None => [sound.comment().replace('\n', " "), sound.details().to_owned()],
+            None => [sound.comment().to_owned(), sound.details().to_owned()],
         };
         let tags = tags_to_save(&sound).join(", ");
-        Self { author: author.to_owned(), tags, comment, details, loaded: controls.params.loaded() }
+        let line = in_a_line(&comment);
+        Self { author: author.to_owned(), tags, comment, line, details, loaded: controls.params.loaded() }
     }
 
     /// Describes a sound.
     fn write(&self, sound: &mut Playable) {
         let tags = self.tags.split(',').map(str::trim).filter(|tag| !tag.is_empty()).map(str::to_owned);
-        let texts = [self.comment.trim().to_owned(), self.details.clone()];
+        let comment = if self.line == in_a_line(&self.comment) { &self.comment } else { self.line.trim() };
+        let texts = [comment.to_owned(), self.details.clone()];
         sound.describe(self.author.trim().to_owned(), tags.collect(), texts);
     }
+}
+
+/// A comment in one line, as a field has it.
+fn in_a_line(comment: &str) -> String {
+    comment.replace('\n', " ")
 }
 
 /// Height of each field of what is saved beside the name, and of all.
@@ -148,7 +157,7 @@ impl Details {
             let fields = [
                 ("by", "Author of the saved sound", "your name", &mut about.author),
                 ("tags", "Tags of the saved sound", "with commas between", &mut about.tags),
-                ("about", "Description of the saved sound", "what it is", &mut about.comment),
+                ("about", "Description of the saved sound", "what it is", &mut about.line),
             ];
             for (row, (title, name, hint, text)) in fields.into_iter().enumerate() {
                 let top = rect.bottom() - 54.0 - ABOUT + row as f32 * FIELD;

@@ -146,7 +146,7 @@ impl Resonator {
     /// millisecond for 13,000, less what [`Resonator::prepare_ahead`] has done of it.
     pub(super) fn prepare(&mut self) {
         if self.given != Some(self.wanted) {
-            while self.prepare_ahead() {}
+            self.prepare_ahead(SLICES);
             (self.given, self.ahead) = (Some(self.wanted), None);
             self.tail.finish(&mut self.tails[1], Some((&mut self.former, &mut self.parts)));
             self.heads[0].set(self.instructions, &self.parts, &mut self.past);
@@ -155,11 +155,11 @@ impl Resonator {
         self.gains = [self.noise_gain(); 2];
     }
 
-    /// Does a slice of what [`Resonator::prepare`] has to do; returns false if none is left. For masses at rest. How many slices are
-    /// done makes no difference to what is heard. Real-time safe.
-    pub(super) fn prepare_ahead(&mut self) -> bool {
+    /// Does some slices of what [`Resonator::prepare`] has to do. For masses at rest. How many slices are done makes no difference to what
+    /// is heard. Real-time safe.
+    pub(super) fn prepare_ahead(&mut self, slices: usize) {
         if self.given == Some(self.wanted) {
-            return false;
+            return;
         }
         let done = match self.ahead {
             Some((tuning, done)) if tuning == self.wanted => done,
@@ -168,11 +168,11 @@ impl Resonator {
                 0
             }
         };
-        if done < SLICES {
-            self.tail.work(done + 1, SLICES);
-            self.ahead = Some((self.wanted, done + 1));
+        let next = SLICES.min(done + slices);
+        if done < next {
+            self.tail.work(next, SLICES);
+            self.ahead = Some((self.wanted, next));
         }
-        done < SLICES
     }
 
     /// Begins with the wanted coefficients. If the masses, which are at rest, have others, they are given these in the first block, slice
@@ -180,6 +180,8 @@ impl Resonator {
     pub(super) fn begin(&mut self) {
         self.ahead = None;
         if self.given != Some(self.wanted) {
+            // The masses have coefficients, but no head any more, should they be set to rest before that block.
+            self.given = None;
             self.heads[0].forget();
             self.gains = [self.noise_gain(); 2];
         }

@@ -150,7 +150,7 @@ fn what_is_laid_out_ahead_makes_no_difference() {
             }
             for pitch in [1.3, 1.0] {
                 body.tune(pitch);
-                (0..slices).for_each(|_| _ = body.prepare_ahead());
+                (0..slices).for_each(|_| body.prepare_ahead(1));
             }
             start(&mut body);
             rendered(&mut body, &input)
@@ -160,6 +160,19 @@ fn what_is_laid_out_ahead_makes_no_difference() {
             assert!(played(slices) == expected, "{slices} slices, {is_known}");
         }
     }
+}
+
+/// A body that began with other coefficients, and was set to rest before they were heard, plays as one made so.
+#[test]
+fn a_body_that_only_began_is_as_new() {
+    let (modes, decay) = (random_body(&mut Sequence::new(key(19, 3))), Decay { low: 1.0, high: 0.3 });
+    let (mut made, input) = (Resonator::new(modes, decay, 48_000.0), signal(2000, 500..1500));
+    let mut began = made.clone();
+    began.tune(1.5);
+    began.begin();
+    began.reset();
+    began.tune(1.0);
+    assert!(played(&mut made, &input) == played(&mut began, &input));
 }
 
 /// Of springs, only T60s are tried with which an echo arrives before it has decayed: with shorter ones, the loudest frame is

@@ -41,8 +41,7 @@ impl ModalReverb {
     /// Advances by silent frames, while it is idle: what was set in silence is laid out ahead of its first sound.
     pub(crate) fn skip(&mut self, frames: usize) {
         if self.state == State::Asleep {
-            let mut slices = 0..frames.div_ceil(BODY_TICK);
-            while slices.next().is_some() && self.body.prepare_ahead() {}
+            self.body.prepare_ahead(frames.div_ceil(BODY_TICK));
         }
     }
 
