@@ -19,6 +19,8 @@ const FALLS: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 /// Lengths and rises in seconds of the noise that are tried.
 const LENGTHS: [f64; 8] = [0.002, 0.006, 0.015, 0.04, 0.1, 0.23, 0.5, 1.0];
 const RISES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
+/// Step to the lengths beside the best of these that are tried.
+const NEARER: f64 = 0.35;
 /// Rise in seconds from which the search for one begins.
 const LEAST_RISE: f64 = 0.002;
 /// Ratio of the T60 of an exponential burst to the length of a quadratic burst of the same energy: the energies are T60
@@ -43,13 +45,17 @@ fn otherwise(noise: Noise) -> Noise {
     }
 }
 
+/// A shorter and a longer noise.
+fn lengthened(noise: Noise, step: f64) -> [Noise; 2] {
+    factors(step).map(|factor| Noise { seconds: (factor * noise.seconds).min(Noise::LONGEST), ..noise })
+}
+
 /// Drafts whose noise is shorter and longer, and rises faster and more slowly.
 fn noises(draft: &Draft, step: f64) -> Vec<Draft> {
     let noise = draft.noise;
-    let lengths = factors(step).map(|factor| Noise { seconds: (factor * noise.seconds).min(Noise::LONGEST), ..noise });
     let rises = factors(step)
         .map(|factor| Noise { attack: (factor * noise.attack.max(LEAST_RISE)).min(Noise::LONGEST), ..noise });
-    lengths.into_iter().chain(rises).map(|noise| Draft { noise, ..draft.clone() }).collect()
+    lengthened(noise, step).into_iter().chain(rises).map(|noise| Draft { noise, ..draft.clone() }).collect()
 }
 
 /// Drafts whose swell is faster and slower, less deep and deeper, bent less and more, and falls sooner and later.
@@ -131,6 +137,10 @@ impl Listener<'_> {
         self.keep(draft, Judged::ByModes, lengths)?;
         let other = with(draft, otherwise(draft.noise));
         self.keep(draft, Judged::ByModes, [other])?;
+        if draft.noise.is_audible() {
+            let near = lengthened(draft.noise, NEARER).map(|noise| with(draft, noise));
+            self.keep(draft, Judged::ByModes, near)?;
+        }
         let rises = RISES.map(|attack| with(draft, Noise { attack, ..draft.noise }));
         self.keep(draft, Judged::AsItIs, rises)
     }
