@@ -3,6 +3,7 @@
 use super::draft::{Draft, Partial, digits};
 use super::levels::{Levels, weight};
 use super::start::at_onset;
+use crate::analysis::line::Line;
 use crate::analysis::modes::{Mode, Strike};
 use crate::params::Param;
 use crate::patch::Patch;
@@ -198,32 +199,29 @@ pub(super) fn find(draft: &Draft, strike: Option<&Strike>, family: Family) -> Op
 }
 
 /// Partials with their modes, and the cents between them.
-fn pairs<'a>(found: &'a Match, partials: &'a [Partial]) -> impl Iterator<Item = (&'a Partial, &'a BodyMode, f64)> {
+fn pairs<'a>(
+    found: &'a Match,
+    partials: &'a [Partial],
+) -> impl Iterator<Item = (&'a Partial, &'a BodyMode, f64)> + Clone {
     let pairs = partials.iter().zip(&found.pairs);
     pairs.filter_map(|(partial, pair)| pair.as_ref().map(|(mode, cents)| (partial, mode, *cents)))
 }
 
-/// The law of loss that fits the T60s best: rates of `b0 + b1 f` by least squares of their relative errors.
+/// The law of loss that fits the T60s best: rates of `b0 + b1 f` by least squares of their relative errors, neither below 0.
 fn loss(found: &Match, partials: &[Partial]) -> Loss {
-    let (mut s, mut sx, mut sy, mut sxx, mut sxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for (partial, _, _) in pairs(found, partials) {
-        let (x, y) = (partial.frequency, LN_1000 / partial.t60);
-        let w = weight(partial) / (y * y);
-        (s, sx, sy, sxx, sxy) = (s + w, sx + w * x, sy + w * y, sxx + w * x * x, sxy + w * x * y);
-    }
-    if s == 0.0 {
-        return found.body.material.loss;
-    }
-    let determinant = s * sxx - sx * sx;
-    let (mut b0, mut b1) = (sy / s, 0.0);
-    if determinant > 1e-9 * s * sxx {
-        (b0, b1) = ((sxx * sy - sx * sxy) / determinant, (s * sxy - sx * sy) / determinant);
-    }
-    if b1 < 0.0 {
-        (b0, b1) = (sy / s, 0.0);
-    } else if b0 < 0.0 {
-        (b0, b1) = (0.0, sxy / sxx);
-    }
+    let point = |(partial, ..): (&Partial, _, _)| {
+        let rate = LN_1000 / partial.t60;
+        [partial.frequency, rate, weight(partial) / (rate * rate)]
+    };
+    let Some(line) = Line::through(pairs(found, partials).map(point)) else { return found.body.material.loss };
+    let Line { middle, y, slope, spread, weight } = line;
+    let (b0, b1) = if slope < 0.0 {
+        (y, 0.0)
+    } else if line.at(0.0) < 0.0 {
+        (0.0, (slope * spread + weight * middle * y) / (spread + weight * middle * middle))
+    } else {
+        (line.at(0.0), slope)
+    };
     Loss { b0: digits(b0, 4), b1: digits(b1, 4), power: 1.0 }
 }
 

@@ -1,21 +1,12 @@
-//! Finds rows of bursts at equal spacings, as of the teeth of a guiro or of echoes, by the regularity with which the level rises.
+//! Finds rows of bursts at equal spacings, as of the teeth of a guiro, by the regularity with which the level rises.
 
 use super::draft::Noise;
 use crate::analysis::log_mel::RATE;
 use libm::{log, sqrt};
 
-/// How fast bursts follow each other.
-struct Pace {
-    /// Samples per block of levels.
-    block: usize,
-    /// Shortest and longest spacing in seconds.
-    spacings: (f64, f64),
-}
-
-/// Teeth, in blocks of half a millisecond, and echoes, in blocks of five.
-const TEETH: Pace = Pace { block: RATE as usize / 2000, spacings: (0.004, 0.08) };
-const ECHOES: Pace = Pace { block: RATE as usize / 200, spacings: (0.08, Noise::FARTHEST) };
-
+/// Samples per block of levels, half a millisecond, and shortest and longest spacing in seconds.
+const BLOCK: usize = RATE as usize / 2000;
+const SPACINGS: [f64; 2] = [0.004, 0.08];
 /// Blocks before one over which its level rises.
 const BEFORE: usize = 3;
 /// Power, relative to the greatest, below which a rise is not heard.
@@ -37,11 +28,11 @@ const TONE: f64 = 0.5;
 const OFF: usize = 8;
 
 /// How far the level of each block is above the mean of the blocks before it, or of one beside it if that rises more.
-fn rises(samples: &[f32], block: usize) -> Vec<f64> {
+fn rises(samples: &[f32]) -> Vec<f64> {
     // Differences of samples raise the high frequencies, in which bursts are sharpest.
     let powers: Vec<f64> = samples
-        .windows(block + 1)
-        .step_by(block)
+        .windows(BLOCK + 1)
+        .step_by(BLOCK)
         .map(|samples| samples.windows(2).map(|pair| f64::from(pair[1]) - f64::from(pair[0])).map(|d| d * d).sum())
         .collect();
     let floor = FAINT * powers.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
@@ -71,22 +62,17 @@ fn repeats(samples: &[f32], distance: usize) -> bool {
 /// The row of bursts with which samples at [`RATE`] begin, up to sixteen; none if their level does not rise regularly, or if they are
 /// a low tone.
 pub(super) fn train(samples: &[f32]) -> Option<Noise> {
-    let row = row(samples, &TEETH)?;
+    let row = row(samples)?;
     let spacing = (row.spacing * f64::from(RATE)) as usize;
     let end = samples.len().min(usize::from(row.hits) * spacing);
     (!repeats(&samples[..end], spacing)).then_some(row)
 }
 
-/// The same for bursts that follow each other slowly. A tone may go on between them.
-pub(super) fn echoes(samples: &[f32]) -> Option<Noise> {
-    row(samples, &ECHOES)
-}
-
 /// The row whose bursts rise most clearly above what is between them.
-fn row(samples: &[f32], pace: &Pace) -> Option<Noise> {
-    let per_second = f64::from(RATE) / pace.block as f64;
-    let [shortest, longest] = [pace.spacings.0, pace.spacings.1].map(|seconds| seconds * per_second);
-    let rises = rises(&samples[..samples.len().min(MOST * longest as usize * pace.block)], pace.block);
+fn row(samples: &[f32]) -> Option<Noise> {
+    let per_second = f64::from(RATE) / BLOCK as f64;
+    let [shortest, longest] = SPACINGS.map(|seconds| seconds * per_second);
+    let rises = rises(&samples[..samples.len().min(MOST * longest as usize * BLOCK)]);
     let steps = ((longest - shortest) / STEP).ceil() as usize;
     let mut best = (CLEARLY, None);
     for spacing in (0..=steps).map(|n| (shortest + STEP * n as f64).min(longest)) {
@@ -110,12 +96,12 @@ fn row(samples: &[f32], pace: &Pace) -> Option<Noise> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
     use crate::dsp::random::{key, uniform};
 
     /// Seconds since the last of a row of bursts.
-    pub(crate) fn since_burst(time: f64, hits: u8, spacing: f64) -> f64 {
+    fn since_burst(time: f64, hits: u8, spacing: f64) -> f64 {
         time - libm::floor(time / spacing).min(f64::from(hits) - 1.0) * spacing
     }
 
@@ -135,38 +121,15 @@ pub(super) mod tests {
         }
     }
 
-    /// Noise that echoes `hits` times at a spacing, over a tone that stays.
-    fn with_echoes(hits: u8, spacing: f64) -> Vec<f32> {
-        let tone = |n: usize| 0.1 * libm::sin(0.07 * n as f64);
-        let sample = |n: usize| {
-            let level = libm::exp(-since_burst(n as f64 / f64::from(RATE), hits, spacing) / 0.03);
-            let burst = level * f64::from(uniform(key(5, 0), n as u64));
-            (burst + tone(n)) as f32
-        };
-        (0..5 * RATE as usize).map(sample).collect()
-    }
-
-    #[test]
-    fn echoes_are_counted_though_a_tone_stays() {
-        for (hits, spacing) in [(6, 0.23), (9, 0.5), (16, 0.1)] {
-            let found = echoes(&with_echoes(hits, spacing)).unwrap();
-            assert_eq!(found.hits, hits, "{found:?}");
-            assert!((found.spacing / spacing - 1.0).abs() < 0.012, "{found:?}, {spacing}");
-        }
-        for spacing in [0.2, 0.3, 0.45] {
-            assert_eq!([3, 4].map(|hits| echoes(&with_echoes(hits, spacing))), [None; 2], "{spacing}");
-        }
-    }
-
     #[test]
     fn a_single_stroke_is_no_row() {
         for t60 in [0.05, 0.4, 10.0] {
             let stroke = noise(|t| libm::exp(-6.9 * t / t60));
-            assert_eq!([train(&stroke), echoes(&stroke)], [None; 2], "{t60}");
+            assert_eq!(train(&stroke), None, "{t60}");
         }
         let saw = |n: usize| (n as f32 * 55.0 / RATE as f32).fract() - 0.5;
         for sound in [Vec::new(), (0..RATE as usize).map(saw).collect()] {
-            assert_eq!([train(&sound), echoes(&sound)], [None; 2]);
+            assert_eq!(train(&sound), None);
         }
     }
 }

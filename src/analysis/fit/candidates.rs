@@ -1,12 +1,11 @@
 //! The possible drafts of a take: what its modes may be, and what may move and excite them.
 
-use super::draft::{Draft, Noise, Partial};
+use super::draft::Draft;
 use super::drift::Drift;
 use super::movement::Sweep;
-use super::prepared::{Prepared, SHORTEST, SLOW};
-use super::start::{Found, MOST_BEFORE_DB, Source};
+use super::prepared::{Prepared, SLOW};
+use super::start::{Found, Source};
 use super::{bursts, held, noise, oscillators, start, sweep};
-use crate::analysis::log_mel::RATE;
 use crate::error::Result;
 
 /// Residual of the modes in dB above which noise alone may explain the sound better.
@@ -24,8 +23,6 @@ const EXPLAINED_DB: f64 = -50.0;
 const WORTH_A_DRIFT_DB: f64 = 6.0;
 /// Reduction of the residual in dB by which a sweep is kept.
 const WORTH_A_SWEEP_DB: f64 = 2.0;
-/// Share of the spacing of bursts after which the last one is over.
-const AFTER_ECHO: f64 = 0.5;
 
 /// The possible drafts of a take. If it is damped while it rings, it ends there.
 ///
@@ -33,25 +30,14 @@ const AFTER_ECHO: f64 = 0.5;
 /// * If it is held, or rises slowly and its modes do not explain it: the modes without its drift. Of a held sound they replace the first
 ///   ones if they explain much more.
 /// * If its modes leave much of it: the modes without the movement of oscillators. If these explain a held sound that modes
-///   alone do not, the next four are left out.
+///   alone do not, the next two are left out.
 /// * Unless its modes explain it: those of each sweep that explains more.
 /// * If its modes explain little: the row of bursts with which it begins, noise that goes on for as long as the sound, and modes that
 ///   noise excites, found after the noise is over.
-/// * Unless its modes explain it, and if it has echoes: the tones that stay after these.
-/// * If it rises slowly: modes found after the rise.
 pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
     // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
-    let [of_still, of_drift, of_modulated, of_search, first, second, of_noise, of_echoes, of_rest] = [
-        [0.0, 0.25],
-        [0.25, 0.45],
-        [0.45, 0.5],
-        [0.5, 0.55],
-        [0.55, 0.65],
-        [0.65, 0.75],
-        [0.75, 0.85],
-        [0.85, 0.9],
-        [0.9, 1.0],
-    ];
+    let [of_still, of_drift, of_modulated, of_search, first, second, of_noise] =
+        [[0.0, 0.3], [0.3, 0.5], [0.5, 0.55], [0.55, 0.6], [0.6, 0.75], [0.75, 0.9], [0.9, 1.0]];
     let analysed = |take: &Prepared, source, part, tell: &mut dyn FnMut(f64) -> Result<()>| {
         start::draft(take, source, most.div_ceil(2), &mut within(part, tell))
     };
@@ -67,19 +53,20 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
     let mut drifts = false;
     if take.is_held || !is_explained && take.rise > SLOW {
         let held = held::draft(take, None, most, &mut within(of_drift, tell))?;
-        if let Some(first) = held.first() {
+        if let Some(held) = held {
             // What decays may have tones that end at different times, of which a residual tells little: let it be heard.
             // Modes that explain the sound may stay the nearest, however little the others leave.
-            drifts = take.is_held && !is_explained && residual_db(first) < still - WORTH_A_DRIFT_DB;
+            drifts = take.is_held && !is_explained && residual_db(&held) < still - WORTH_A_DRIFT_DB;
             if drifts {
                 found.clear();
             }
-            found.extend(held);
+            found.push(held);
         }
     }
-    let modulated = if still > SWAYS_DB { modulated(take, most, &mut within(of_modulated, tell))? } else { Vec::new() };
+    let modulated = if still > SWAYS_DB { modulated(take, most, &mut within(of_modulated, tell))? } else { None };
     // As of a drift: the residual of what decays tells little.
-    let sways = take.is_held && still > NOISE_DB && modulated.iter().any(|found| residual_db(found) < SWAYS_DB);
+    let sways =
+        take.is_held && still > NOISE_DB && modulated.as_ref().is_some_and(|found| residual_db(found) < SWAYS_DB);
     if !is_explained && !drifts && !sways {
         let sweeps = sweep::find(&take.mean, &mut || tell(of_search[0]))?;
         let mut swept = Vec::new();
@@ -91,26 +78,16 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
         found.append(&mut swept);
         found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
     }
-    let strike = found[0].1.clone();
     if still > NOISE_DB && !drifts && !sways {
+        let strike = found[0].1.clone();
         let empty = || start::from(take, None, &Source { struck: false, ..all }, false);
         found.extend(bursts::train(&take.mean).map(|noise| (Draft { noise, ..empty() }, strike.clone())));
         found.push((noise::lasting(take, most, empty()), strike.clone()));
         let late = Source { late: LATE * take.seconds(), struck: false, ..all };
         let (driven, _) = analysed(take, late, of_noise, tell)?;
-        found.push((driven, strike.clone()));
-    }
-    let row = if is_explained || sways { None } else { bursts::echoes(&take.mean) };
-    if let Some(row) = row {
-        let echoed = echoed(take, row, most, &mut within(of_echoes, tell))?;
-        found.extend(echoed.into_iter().map(|draft| (draft, strike.clone())));
+        found.push((driven, strike));
     }
     found.extend(modulated);
-    if take.rise > SLOW && !sways {
-        let swept = found[0].0.sweep;
-        let (rung, _) = analysed(take, Source { late: take.rise, swept, ..all }, of_rest, tell)?;
-        found.push((rung, strike));
-    }
     Ok(found)
 }
 
@@ -119,42 +96,16 @@ fn within([from, to]: [f64; 2], tell: &mut dyn FnMut(f64) -> Result<()>) -> impl
     move |share| tell(from + (to - from) * share).is_ok()
 }
 
-/// Drafts of the tones that stay after a row of bursts, found after the last of these; none if the sound ends before that.
-fn echoed(take: &Prepared, row: Noise, most: usize, tell: &mut dyn FnMut(f64) -> bool) -> Result<Vec<Draft>> {
-    let late = row.last() + AFTER_ECHO * row.spacing;
-    let start = (late * f64::from(RATE)) as usize;
-    if take.seconds() - late < SHORTEST {
-        return Ok(Vec::new());
-    }
-    let after = take.replaced(take.channels.iter().map(|channel| channel[start..].to_vec()).collect());
-    let after = Prepared { rise: 0.0, ..after };
-    // What has rung since the onset, and is not what is left of the last burst.
-    let stays = |partial: &&Partial| partial.fallen_db(late) < MOST_BEFORE_DB;
-    let earlier = |partial: &Partial| Partial { phase: 0.0, ..partial.earlier(late, MOST_BEFORE_DB) };
-    let from_onset = |(draft, _): Found| {
-        let partials: Vec<Partial> = draft.partials.iter().filter(stays).map(earlier).collect();
-        (!partials.is_empty()).then_some(Draft { partials, noise: row, ..draft })
-    };
-    // A sweep is over by then, and the phase of a vibrato would be lost.
-    let found = held::draft(&after, Some(Sweep::NONE), most.div_ceil(2), tell)?;
-    Ok(found.into_iter().filter_map(from_onset).collect())
-}
-
-/// Drafts of a sound that oscillators move: the modes of the sound without that; none if it does not move regularly.
-fn modulated(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> bool) -> Result<Vec<Found>> {
+/// The draft of a sound that oscillators move: the modes of the sound without that; none if it does not move regularly.
+fn modulated(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> bool) -> Result<Option<Found>> {
     let (oscillators, swept) = oscillators::find(take, &mut || tell(0.0))?;
     if oscillators.is_empty() {
-        return Ok(Vec::new());
+        return Ok(None);
     }
     let drift = Drift::by(&oscillators, swept.envelope(), take.mean.len());
     let still = take.replaced(take.channels.iter().map(|channel| drift.removed_from(channel)).collect());
-    let mut found = held::draft(&still, Some(swept), most, tell)?;
-    if found.iter().all(|held| residual_db(held) > NOISE_DB) {
-        // Noise that moves so is left to the bed.
-        found.push((start::from(take, None, &Source { swept, late: 0.0, struck: false }, false), None));
-    }
-    let modulated = |(draft, strike)| (Draft { oscillators: oscillators.clone(), ..draft }, strike);
-    Ok(found.into_iter().map(modulated).collect())
+    let found = held::draft(&still, Some(swept), most, tell)?;
+    Ok(found.map(|(draft, strike)| (Draft { oscillators, ..draft }, strike)))
 }
 
 /// The residual of a strike in dB.
@@ -164,28 +115,10 @@ fn residual_db((_, strike): &Found) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bursts::tests::since_burst;
     use super::super::prepared::tests::prepared;
     use super::*;
-    use crate::dsp::random;
+    use crate::analysis::log_mel::RATE;
     use std::f64::consts::TAU;
-
-    #[test]
-    fn tones_that_stay_after_echoes_are_found() {
-        let (spacing, chance) = (0.25, random::key(3, 0));
-        let sample = |n: usize| {
-            let t = n as f64 / f64::from(RATE);
-            let burst = libm::exp(-since_burst(t, 6, spacing) / 0.02) * f64::from(random::uniform(chance, n as u64));
-            (0.3 * burst + 0.1 * libm::exp(-0.7 * t) * libm::sin(TAU * 440.0 * t)) as f32
-        };
-        let mut take = prepared((0..3 * RATE as usize).map(sample).collect(), RATE);
-        let found = of(&mut take, 60, &mut |_| Ok(())).unwrap();
-        let echoed = found.iter().find(|(draft, _)| draft.noise.hits > 1).map(|(draft, _)| draft).unwrap();
-        assert_eq!(echoed.noise.hits, 6, "{:?}", echoed.noise);
-        let main = echoed.main().unwrap();
-        let off_db = 20.0 * libm::log10(main.amplitude.abs() / 0.1);
-        assert!((main.frequency - 440.0).abs() < 0.2 && off_db.abs() < 1.0, "{main:?}");
-    }
 
     #[test]
     fn a_vibrato_that_modes_explain_is_found_as_one() {

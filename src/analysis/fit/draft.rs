@@ -71,9 +71,8 @@ impl Noise {
     pub(super) const SHORT: Self =
         Self { seconds: 0.004, decay: NoiseDecay::Quadratic, attack: 0.0, hits: 1, spacing: 0.012 };
 
-    /// The engine's longest burst and the longest distance of two bursts, in seconds, and its greatest number of bursts.
+    /// The engine's longest burst in seconds, and its greatest number of bursts.
     pub(super) const LONGEST: f64 = 1.0;
-    pub(super) const FARTHEST: f64 = 0.5;
     pub(super) const MOST_HITS: u8 = 16;
     /// Seconds from which a burst is heard as noise, and affects the decays.
     pub(super) const AUDIBLE: f64 = 0.02;
@@ -136,15 +135,10 @@ impl Partial {
         self.amplitude * self.amplitude * self.t60
     }
 
-    /// By how many dB it falls in so many seconds.
-    pub(super) fn fallen_db(&self, seconds: f64) -> f64 {
-        60.0 * seconds / self.t60
-    }
-
     /// A partial measured so many seconds after the onset, with the level that it had there, but at most `most_db` above. Its phase
     /// stays as it is.
     pub(super) fn earlier(&self, seconds: f64, most_db: f64) -> Self {
-        let before = self.fallen_db(seconds).min(most_db);
+        let before = (60.0 * seconds / self.t60).min(most_db);
         Self { amplitude: self.amplitude * pow(10.0, before / 20.0), ..*self }
     }
 

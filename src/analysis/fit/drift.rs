@@ -6,6 +6,7 @@
 
 use super::movement::Oscillator;
 use super::oscillators;
+use super::pitch_track::Point;
 use super::prepared::SLOW;
 use super::resample::Reader;
 use super::tones::{HOP, Tone, tones};
@@ -77,10 +78,10 @@ impl Drift {
         refined
     }
 
-    /// The pitch in semitones relative to its mean, with times in seconds.
-    pub(super) fn pitches(&self) -> Vec<(f64, f64)> {
+    /// The pitch in semitones relative to its mean.
+    pub(super) fn pitches(&self) -> Vec<Point> {
         let time = |n: usize| (n * HOP) as f64 / f64::from(RATE);
-        self.pitch.iter().enumerate().map(|(n, pitch)| (time(n), 12.0 / LN_2 * pitch)).collect()
+        self.pitch.iter().enumerate().map(|(n, pitch)| [time(n), 12.0 / LN_2 * pitch, 1.0]).collect()
     }
 
     /// The tremolo that explains the level best, if it explains most of it.
@@ -258,7 +259,7 @@ mod tests {
         };
         let at = |n: usize| moved((n * HOP) as f64 / f64::from(RATE));
         let pitches = drift.pitches();
-        let (moves, off) = (rms(&|n| at(n)[0]), rms(&|n| pitches[n].1 - at(n)[0]));
+        let (moves, off) = (rms(&|n| at(n)[0]), rms(&|n| pitches[n][1] - at(n)[0]));
         assert!(off < 0.2 * moves, "{off} of {moves} semitones");
         let tremolo = drift.tremolo(&mut || true).unwrap().unwrap();
         let depth = 20.0 / LN_10 * 0.2;

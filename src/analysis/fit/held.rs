@@ -22,9 +22,8 @@ const ATTACK: f64 = 0.1;
 const MOST_OFF: f64 = 3.0;
 const REACH: f64 = 22.0;
 
-/// Up to two drafts, and the strike in which their modes were found, with at most `most` modes; none if the sound has no tones. In
-/// the second draft each tone is a single mode: several that almost cancel may not do so when they are played. If the movement of
-/// the pitch is `known`, the drafts have that one, and no tremolo.
+/// The draft, with at most `most` modes, and the strike in which these were found; none if the sound has no tones. If the movement
+/// of the pitch is `known`, the draft has that one, and no tremolo.
 ///
 /// First the drift is measured by itself, and then by how the sound differs from the modes that were found without it, since
 /// these explain the beats. More modes are found in what the first ones leave, among them high and faint ones.
@@ -33,13 +32,13 @@ pub(super) fn draft(
     known: Option<Sweep>,
     most: usize,
     tell: &mut dyn FnMut(f64) -> bool,
-) -> Result<Vec<Found>> {
-    let Some(first) = Drift::of(&take.mean, take.rise) else { return Ok(Vec::new()) };
+) -> Result<Option<Found>> {
+    let Some(first) = Drift::of(&take.mean, take.rise) else { return Ok(None) };
     let without = |drift: &Drift| take.channels.iter().map(|channel| drift.removed_from(channel)).collect::<Vec<_>>();
     let mut part = |n: usize, share: f64| tell((n as f64 + share) / 4.0);
     let found = |drift: &Drift, tell: &mut dyn FnMut(f64) -> bool| start::strike(&without(drift), most / 3, tell);
     let (mut drift, Some(mut strike)) = (first.clone(), found(&first, &mut |share| part(0, share))?) else {
-        return Ok(Vec::new());
+        return Ok(None);
     };
     for n in 1..=MEASURED {
         let refined = drift.refined(&strike);
@@ -70,16 +69,10 @@ pub(super) fn draft(
         draft.oscillators = drift.tremolo(&mut || tell(1.0))?.into_iter().collect();
     }
     let pairs = compared(&still[from.min(still.len())..], &unexplained(&still, usize::MAX, &strike, from));
-    let with_steady = |all: bool| {
-        let mut draft = draft.clone();
-        steady(&mut draft, most, &pairs, from, all);
-        // The modes have the mean pitch, and those of a draft the pitch without sweep and vibrato.
-        draft.partials.iter_mut().for_each(|partial| partial.frequency *= pow(2.0, -mean / 12.0));
-        (draft, Some(strike.clone()))
-    };
-    let mut drafts = [false, true].map(with_steady).to_vec();
-    drafts.dedup_by(|second, first| second.0 == first.0);
-    Ok(drafts)
+    steady(&mut draft, most, &pairs, from);
+    // The modes have the mean pitch, and those of a draft the pitch without sweep and vibrato.
+    draft.partials.iter_mut().for_each(|partial| partial.frequency *= pow(2.0, -mean / 12.0));
+    Ok(Some((draft, Some(strike))))
 }
 
 /// The tones of a sound, each with its track relative to the modes that leave `rest` of the sound.
@@ -88,9 +81,9 @@ fn compared(sound: &[f32], rest: &[f32]) -> Vec<(Tone, Tone)> {
     tones(sound, None).into_iter().zip(tones(sound, Some(&modes))).collect()
 }
 
-/// Replaces the modes of each tone by a steady mode if that is nearer to the track of its level, or of `all` tones. `pairs` are
-/// those of [`compared`], of a sound that begins with a sample `from` the onset. The draft gets no more than `most` modes.
-fn steady(draft: &mut Draft, most: usize, pairs: &[(Tone, Tone)], from: usize, all: bool) {
+/// Replaces the modes of each tone by a steady mode if that is nearer to the track of its level. `pairs` are those of
+/// [`compared`], of a sound that begins with a sample `from` the onset. The draft gets no more than `most` modes.
+fn steady(draft: &mut Draft, most: usize, pairs: &[(Tone, Tone)], from: usize) {
     let moments = |seconds: f64| seconds * f64::from(RATE) / HOP as f64;
     for (tone, against) in pairs {
         let Some(line) = tone.line(moments(ATTACK) as usize) else { continue };
@@ -99,7 +92,7 @@ fn steady(draft: &mut Draft, most: usize, pairs: &[(Tone, Tone)], from: usize, a
         let of_steady: f64 =
             levels.iter().enumerate().map(|(n, [level, _])| off(level - line[0] - line[1] * n as f64)).sum();
         let of_modes: f64 = against.levels().iter().map(|[level, _]| off(*level)).sum();
-        if !all && of_steady >= of_modes {
+        if of_steady >= of_modes {
             continue;
         }
         let others = pairs.iter().map(|(other, _)| other).filter(|other| other.frequency != tone.frequency);
@@ -193,9 +186,9 @@ mod tests {
         draft.partials = vec![partial(700.0, 0.4), partial(1500.0, 100.0)];
         let mut few = draft.clone();
         let pairs = compared(&sound, &rest);
-        steady(&mut few, 1, &pairs, 0, false);
+        steady(&mut few, 1, &pairs, 0);
         assert_eq!(few.partials, [partial(1500.0, 100.0)]);
-        steady(&mut draft, 8, &pairs, 0, false);
+        steady(&mut draft, 8, &pairs, 0);
         assert_eq!(draft.partials.len(), 2, "{:?}", draft.partials);
         assert_eq!(draft.partials[0], partial(1500.0, 100.0));
         let Partial { frequency, t60, amplitude, pan, .. } = draft.partials[1];

@@ -11,8 +11,6 @@ use std::f64::consts::PI;
 /// Number of steps along the body's length in which strike positions and pickup positions are tried.
 const STRIKES: u32 = 50;
 const PICKUPS: u32 = 20;
-/// Rounds of the search around the best place, each with smaller steps.
-const FINER: usize = 8;
 /// Greatest tilt in dB per octave.
 const STEEPEST: f64 = 24.0;
 /// Least weight of a mode relative to the greatest weight.
@@ -117,16 +115,6 @@ impl Levels {
                 let other = moved(f64::from(strike) / f64::from(STRIKES), pickup);
                 let points = self.points(&other);
                 best.iter_mut().zip(&shares).for_each(|(best, shares)| try_at(best, &other, &points, shares));
-            }
-        }
-        for (best, shares) in best.iter_mut().zip(&shares) {
-            let mut step = 0.5 / f64::from(STRIKES);
-            for _ in 0..FINER {
-                for [strike, pickup] in [[-step, 0.0], [step, 0.0], [0.0, -step], [0.0, step]] {
-                    let other = moved(best.1.strike.x + strike, best.1.pickup.x + pickup);
-                    try_at(best, &other, &self.points(&other), shares);
-                }
-                step *= 0.6;
             }
         }
         best

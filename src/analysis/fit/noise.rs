@@ -4,7 +4,7 @@ use super::bed::{self, Lines};
 use super::draft::{Draft, Noise};
 use super::movement::Sweep;
 use super::prepared::Prepared;
-use super::refine::{Listener, NEAR_DB};
+use super::refine::{Judged, Listener, NEAR_DB};
 use super::sweep;
 use crate::analysis::log_mel::{BANDS, LogMel, MelBands, RATE, time};
 use crate::error::Result;
@@ -12,15 +12,12 @@ use crate::error::Result;
 /// Powers relative to the greatest at which a noise has come to its level, and at which it is over: −3 and −30 dB.
 const HALF: f64 = 0.5;
 const OVER: f64 = 1e-3;
-/// Sweeps of noise that are tried, in semitones and seconds, and the steps from the best of these; seconds of the longest sound for
-/// which they are, and the reduction of the distance in dB for which one is kept.
+/// Sweeps of noise that are tried, in semitones and seconds; seconds of the longest sound for which they are, and the reduction of
+/// the distance in dB for which one is kept.
 const SEMITONES: [f64; 6] = [-22.0, -13.0, -6.0, 6.0, 13.0, 22.0];
 const SECONDS: [f64; 5] = [0.05, 0.1, 0.2, 0.4, 0.8];
-const STEPS: [f64; 3] = [0.4, 0.25, 0.15];
 const LONGEST_SWEPT: f64 = 1.5;
 const AUDIBLE_SWEEP_DB: f64 = 0.2;
-/// Length of the bursts of a noise that stays at its level, relative to the distance between them.
-const OVERLAP: f64 = 3.0;
 /// Seed of the pans of the modes.
 const SEED: u64 = 10;
 
@@ -44,13 +41,6 @@ pub(super) fn lasting(take: &Prepared, most: usize, draft: Draft) -> Draft {
     through_short_modes(&target, &take.mean, most, Draft { noise, ..draft })
 }
 
-/// A row of bursts without gaps, whose level stays about the same until the sound is over.
-fn level_noise(take: &Prepared) -> Noise {
-    let spacing = (extent(&MelBands::new().measure(&take.mean)).1 / f64::from(Noise::MOST_HITS))
-        .clamp(Noise::AUDIBLE / OVERLAP, Noise::FARTHEST);
-    Noise { hits: Noise::MOST_HITS, spacing, seconds: (OVERLAP * spacing).min(Noise::LONGEST), ..Noise::SHORT }
-}
-
 /// The draft with short modes at the levels `target` of samples whose pitch is constant.
 fn through_short_modes(target: &LogMel, samples: &[f32], most: usize, draft: Draft) -> Draft {
     let mut partials = bed::short(target, &Lines::new(samples), most, SEED);
@@ -58,7 +48,7 @@ fn through_short_modes(target: &LogMel, samples: &[f32], most: usize, draft: Dra
     Draft { partials, ..draft }
 }
 
-/// The draft with its noise shaped, or with a noise that stays at its level, and with the sweep of its modes if it has one.
+/// The draft with its noise shaped, and with the sweep of its modes if it has one.
 /// `tell` is called with the share of this that is done.
 pub(super) fn shaped(
     draft: Draft,
@@ -67,15 +57,9 @@ pub(super) fn shaped(
     listener: &mut Listener,
     tell: &dyn Fn(&mut Listener, f64) -> Result<()>,
 ) -> Result<Draft> {
-    let mut plateau = Draft { noise: level_noise(take), ..draft.clone() };
     let mut best = draft;
-    let mut still = listener.shape_lasting_noise(&mut best)?;
-    tell(listener, 0.3)?;
-    let of_plateau = listener.shape_lasting_noise(&mut plateau)?;
-    tell(listener, 0.6)?;
-    if of_plateau < still {
-        (best, still) = (plateau, of_plateau);
-    }
+    let still = listener.shape_lasting_noise(&mut best)?;
+    tell(listener, 0.4)?;
     let is_short = take.mean.len() <= (LONGEST_SWEPT * f64::from(RATE)) as usize;
     let moving = if is_short && still > NEAR_DB { swept(&best, still, take, most, listener)? } else { None };
     tell(listener, 1.0)?;
@@ -84,29 +68,25 @@ pub(super) fn shaped(
 
 /// The draft with the sweep that brings it nearer than `still` dB, if there is one: found by ear, since noise has no pitch to follow.
 fn swept(draft: &Draft, still: f64, take: &Prepared, most: usize, listener: &mut Listener) -> Result<Option<Draft>> {
-    let (decay, mut bands) = (sweep::decay(&take.mean), MelBands::new());
-    let (mut least, mut found) = (still - AUDIBLE_SWEEP_DB, None);
-    let coarse = SEMITONES.iter().flat_map(|semitones| SECONDS.map(|seconds| (*semitones, seconds)));
-    let mut tried: Vec<Sweep> =
-        coarse.map(|(semitones, seconds)| Sweep { semitones, seconds, curve: 0.0, ..Sweep::NONE }).collect();
-    for step in STEPS {
-        for sweep in tried {
-            let samples = sweep::stilled(&take.mean, &sweep, decay);
-            let mut other =
-                through_short_modes(&bands.measure(&samples), &samples, most, Draft { sweep, ..draft.clone() });
-            let distance = listener.correct_levels(&mut other)?;
-            if distance < least {
-                (found, least) = (Some(other), distance);
-            }
-        }
-        let Some(found) = &found else { return Ok(None) };
+    let decay = sweep::decay(&take.mean);
+    let with = |sweep| {
+        let samples = sweep::stilled(&take.mean, &sweep, decay);
+        through_short_modes(&MelBands::new().measure(&samples), &samples, most, Draft { sweep, ..draft.clone() })
+    };
+    let mut found = draft.clone();
+    for (semitones, seconds) in SEMITONES.iter().flat_map(|semitones| SECONDS.map(|seconds| (*semitones, seconds))) {
+        let other = with(Sweep { semitones, seconds, curve: 0.0, ..Sweep::NONE });
+        listener.keep(&mut found, Judged::ByLevels, [other])?;
+    }
+    if found.sweep.is_none() {
+        return Ok(None);
+    }
+    listener.descend(&mut found, Judged::ByLevels, |found, step| {
         let near = [[step, 0.0, 0.0], [0.0, step, 0.0], [0.0, 0.0, step]];
-        tried = near.iter().flat_map(|by| [*by, by.map(|by| -by)]).map(|by| found.sweep.moved(by)).collect();
-    }
-    if let Some(swept) = &mut found {
-        listener.shape_lasting_noise(swept)?;
-    }
-    Ok(found)
+        near.iter().flat_map(|by| [*by, by.map(|by| -by)]).map(|by| with(found.sweep.moved(by))).collect()
+    })?;
+    let distance = listener.shape_lasting_noise(&mut found)?;
+    Ok((distance < still - AUDIBLE_SWEEP_DB).then_some(found))
 }
 
 #[cfg(test)]
@@ -161,14 +141,6 @@ mod tests {
             octaves(noise.attack, breath.attack) < 0.4 && octaves(noise.seconds, breath.seconds) < 0.3,
             "{noise:?}"
         );
-    }
-
-    #[test]
-    fn noise_that_stays_at_its_level_becomes_a_row_of_bursts() {
-        let level = Noise { hits: 16, spacing: 0.02, seconds: 0.06, ..Noise::SHORT };
-        let (Draft { noise, .. }, nearer) = found(&sound(level, Sweep::NONE));
-        assert!(noise.hits == 16 && nearer > 5.0, "{nearer:.2} dB nearer, {noise:?}");
-        assert!(octaves(noise.last(), level.last()) < 0.12, "{noise:?}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::draft::MOST_OSCILLATORS;
 use super::movement::{Oscillator, Sweep};
-use super::pitch_track;
+use super::pitch_track::{self, Point};
 use super::prepared::Prepared;
 use crate::analysis::level::{dbfs, rms};
 use crate::analysis::log_mel::RATE;
@@ -42,9 +42,6 @@ const FEWEST: usize = 100;
 /// Largest sum of the depths in semitones and in dB that the engine plays: the range of its tune, and half that of its gain.
 const MOST_SEMITONES: f64 = 48.0;
 const MOST_DB: f64 = 36.0;
-
-/// A value at a time in seconds, with a weight.
-type Point = [f64; 3];
 
 /// A track that is explained by a mean, oscillators, and perhaps a slope.
 struct Track {
@@ -205,7 +202,7 @@ pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> bool) -> Result<(V
     let mut pitch = Track::new(pitches.clone(), false, Vec::new());
     let mut swept = Sweep::NONE;
     let of_pitch = if pitch.moves(LEAST_SEMITONES) && pitch.explain(tell)? {
-        let left: Vec<(f64, f64)> = pitches.iter().zip(&pitch.rest).map(|([time, ..], rest)| (*time, *rest)).collect();
+        let left: Vec<Point> = pitches.iter().zip(&pitch.rest).map(|([time, ..], rest)| [*time, *rest, 1.0]).collect();
         let (sweep, _) = pitch_track::of_pitch(&left);
         if sweep.semitones != 0.0 {
             let envelope = sweep.envelope();

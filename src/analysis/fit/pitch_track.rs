@@ -5,6 +5,7 @@
 //! is far more exact than the bandwidth of the window.
 
 use super::movement::{Sweep, Vibrato};
+use super::simplex;
 use crate::analysis::log_mel::RATE;
 use crate::dsp::pitch::SweepEnvelope;
 use libm::{cos, exp, fabs, log2, pow, sin, sqrt};
@@ -39,8 +40,8 @@ const RATES: (f64, f64, f64) = (2.5, 0.25, Vibrato::FASTEST);
 const DELAYS: [f64; 6] = [0.0, 0.3, 0.6, 0.9, 1.3, 2.0];
 /// Fewest cycles of a vibrato: a part of one fits any bend.
 const LEAST_CYCLES: f64 = 2.0;
-/// Rounds of the fine search.
-const ROUNDS: usize = 12;
+/// Steps of the fine search.
+const STEPS: usize = 60;
 /// Added to the diagonal of the equations, so that they can be solved.
 const RIDGE: f64 = 1e-9;
 /// Share of the squared error that a sweep, and also a vibrato, must remove to be kept.
@@ -49,15 +50,8 @@ const WORTH: f64 = 0.4;
 const LEAST_SWEEP: f64 = 0.15;
 const LEAST_VIBRATO: f64 = 0.02;
 
-/// The pitch at a moment.
-#[derive(Clone, Copy, Debug)]
-struct Point {
-    /// Seconds.
-    time: f64,
-    /// Semitones above 1 Hz.
-    pitch: f64,
-    weight: f64,
-}
+/// The pitch at a moment: seconds, semitones above 1 Hz, and a weight.
+pub(super) type Point = [f64; 3];
 
 /// A window of one frequency: the two quadratures.
 struct Window {
@@ -139,78 +133,58 @@ fn follow(samples: &[f32], longest: f64) -> Vec<Point> {
     let heard = path.iter().rev().filter(|[amplitude, frequency, middle]| {
         *amplitude > FAINT * loudest && *frequency > 0.5 * LOWEST && *middle >= 0.0
     });
-    heard
-        .map(|[amplitude, frequency, middle]| Point {
-            time: middle / f64::from(RATE),
-            pitch: 12.0 * log2(*frequency),
-            weight: sqrt(amplitude / loudest),
-        })
-        .collect()
+    let point = |[amplitude, frequency, middle]: &[f64; 3]| {
+        [middle / f64::from(RATE), 12.0 * log2(*frequency), sqrt(amplitude / loudest)]
+    };
+    heard.map(point).collect()
 }
 
-/// A weighted least-squares fit of the pitch by functions of time: their factors and the squared error. A function that
-/// is always 0 gets the factor 0.
-fn solve<const N: usize>(points: &[Point], functions: impl Fn(f64) -> [f64; N]) -> ([f64; N], f64) {
-    let mut matrix = SMatrix::<f64, N, N>::identity() * RIDGE;
-    let (mut right, mut square) = (SVector::<f64, N>::zeros(), 0.0);
-    for point in points {
-        let values = SVector::from(functions(point.time));
-        matrix += point.weight * values * values.transpose();
-        right += point.weight * point.pitch * values;
-        square += point.weight * point.pitch * point.pitch;
+/// A weighted least-squares fit of the pitch by a constant and two functions of time: the factors of these and the squared error. A
+/// function that is always 0 gets the factor 0.
+fn solve(points: &[Point], functions: impl Fn(f64) -> [f64; 2]) -> ([f64; 2], f64) {
+    let mut matrix = SMatrix::<f64, 3, 3>::identity() * RIDGE;
+    let (mut right, mut square) = (SVector::<f64, 3>::zeros(), 0.0);
+    for [time, pitch, weight] in points {
+        let [first, second] = functions(*time);
+        let values = SVector::from([1.0, first, second]);
+        matrix += *weight * values * values.transpose();
+        right += weight * pitch * values;
+        square += weight * pitch * pitch;
     }
     let factors = Cholesky::new(matrix).map_or(SVector::zeros(), |factors| factors.solve(&right));
-    (factors.into(), (square - factors.dot(&right)).max(0.0))
+    ([factors[1], factors[2]], (square - factors.dot(&right)).max(0.0))
 }
 
-/// The times and shapes of a sweep and a vibrato, without their depths.
-#[derive(Clone, Copy, Debug)]
-struct Movement {
-    seconds: f64,
-    curve: f64,
-    rate: f64,
-    delay: f64,
+/// The sweep and vibrato with the times, curve and rate of `times` that explain the points best, and the squared error.
+fn best_depths(times: &Sweep, points: &[Point], sweeps: bool, trembles: bool) -> (Sweep, f64) {
+    let envelope = SweepEnvelope::new(1.0, times.seconds, times.curve);
+    let vibrato = Vibrato { semitones: 1.0, ..times.vibrato };
+    let falls = |t: f64| if sweeps { envelope.at(t) } else { 0.0 };
+    let trembling = |t: f64| if trembles { vibrato.at(t) } else { 0.0 };
+    let ([semitones, depth], error) = solve(points, |t| [falls(t), trembling(t)]);
+    // The engine's vibrato begins upwards.
+    let is_playable = (0.0..=Vibrato::DEEPEST).contains(&depth) && fabs(semitones) <= Sweep::LARGEST;
+    let sweep = Sweep { semitones, vibrato: Vibrato { semitones: depth, ..vibrato }, ..*times };
+    (sweep, if is_playable { error } else { f64::INFINITY })
 }
 
-impl Movement {
-    /// The sweep and vibrato of these times that explain the points best, and the squared error.
-    fn explain(&self, points: &[Point], sweeps: bool, trembles: bool) -> (Sweep, f64) {
-        let envelope = SweepEnvelope::new(1.0, self.seconds, self.curve);
-        let vibrato = Vibrato { semitones: 1.0, rate: self.rate, delay: self.delay };
-        let falls = |t: f64| if sweeps { envelope.at(t) } else { 0.0 };
-        let ([_, semitones, depth], error) = if trembles {
-            solve(points, |t| [1.0, falls(t), vibrato.at(t)])
-        } else {
-            let ([pitch, semitones], error) = solve(points, |t| [1.0, falls(t)]);
-            ([pitch, semitones, 0.0], error)
-        };
-        let sweep = Sweep {
-            semitones,
-            seconds: self.seconds,
-            curve: self.curve,
-            vibrato: Vibrato { semitones: depth, ..vibrato },
-        };
-        // The engine's vibrato begins upwards.
-        let is_playable = (0.0..=Vibrato::DEEPEST).contains(&depth) && fabs(semitones) <= Sweep::LARGEST;
-        (sweep, if is_playable { error } else { f64::INFINITY })
-    }
-
-    /// The movement with one number changed: up or down by a step of at most 1.
-    fn moved(&self, number: usize, step: f64) -> Self {
-        let mut moved = *self;
-        match number {
-            0 => moved.seconds = (self.seconds * exp(0.5 * step)).clamp(SECONDS.0, 5.0),
-            1 => moved.curve = (self.curve + 0.3 * step).clamp(-1.0, 1.0),
-            2 => moved.rate = (self.rate * exp(0.1 * step)).clamp(RATES.0, RATES.2),
-            _ => moved.delay = (self.delay + 0.3 * step).clamp(0.0, 5.0),
-        }
-        moved
+/// A sweep with changed numbers: the times and the rate by powers of e, curve and delay by sums.
+fn moved(sweep: &Sweep, [seconds, curve, rate, delay]: [f64; 4]) -> Sweep {
+    Sweep {
+        seconds: (sweep.seconds * exp(seconds)).clamp(SECONDS.0, 5.0),
+        curve: (sweep.curve + curve).clamp(-1.0, 1.0),
+        vibrato: Vibrato {
+            rate: (sweep.vibrato.rate * exp(0.2 * rate)).clamp(RATES.0, RATES.2),
+            delay: (sweep.vibrato.delay + delay).clamp(0.0, 5.0),
+            ..sweep.vibrato
+        },
+        ..*sweep
     }
 }
 
-/// The pitch of the strongest partial of samples at [`RATE`], from their onset on: seconds, semitones and a weight each.
-pub(super) fn pitches(samples: &[f32]) -> Vec<[f64; 3]> {
-    follow(samples, LONGEST_REGULAR).into_iter().map(|point| [point.time, point.pitch, point.weight]).collect()
+/// The pitch of the strongest partial of samples at [`RATE`], from their onset on.
+pub(super) fn pitches(samples: &[f32]) -> Vec<Point> {
+    follow(samples, LONGEST_REGULAR)
 }
 
 /// The movement of the pitch of samples at [`RATE`], from their onset on; [`Sweep::NONE`] if the pitch is constant.
@@ -218,16 +192,13 @@ pub(super) fn find(samples: &[f32]) -> Sweep {
     explain(&follow(samples, LONGEST))
 }
 
-/// The movement that explains a measured pitch, as times in seconds and semitones, and its mean in semitones.
-pub(super) fn of_pitch(pitches: &[(f64, f64)]) -> (Sweep, f64) {
-    let points: Vec<Point> =
-        pitches.iter().map(|(time, pitch)| Point { time: *time, pitch: *pitch, weight: 1.0 }).collect();
-    let sweep = explain(&points);
+/// The movement that explains a measured pitch, and its mean in semitones.
+pub(super) fn of_pitch(points: &[Point]) -> (Sweep, f64) {
+    let sweep = explain(points);
     let envelope = sweep.envelope();
-    let at = |(time, _): &(f64, f64)| {
-        sweep.vibrato.at(*time) + if sweep.semitones == 0.0 { 0.0 } else { envelope.at(*time) }
-    };
-    (sweep, pitches.iter().map(at).sum::<f64>() / pitches.len().max(1) as f64)
+    let at =
+        |[time, ..]: &Point| sweep.vibrato.at(*time) + if sweep.semitones == 0.0 { 0.0 } else { envelope.at(*time) };
+    (sweep, points.iter().map(at).sum::<f64>() / points.len().max(1) as f64)
 }
 
 /// The movement that explains the points; [`Sweep::NONE`] if none does.
@@ -235,49 +206,28 @@ fn explain(points: &[Point]) -> Sweep {
     if points.len() < FEWEST {
         return Sweep::NONE;
     }
-    let still = Movement { seconds: 0.1, curve: 0.5, rate: 5.0, delay: 0.0 };
-    let end = points.last().map_or(0.0, |point| point.time);
+    let end = points.last().map_or(0.0, |[time, ..]| *time);
+    let least = |tried: &mut dyn Iterator<Item = Sweep>, sweeps: bool, trembles: bool| {
+        let error = |sweep: &Sweep| best_depths(sweep, points, sweeps, trembles).1;
+        let start = tried.min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or(Sweep::NONE);
+        let near = |place| best_depths(&moved(&start, place), points, sweeps, trembles);
+        near(simplex::least(STEPS, |place| Ok(near(place).1)).map_or([0.0; 4], |(place, _)| place))
+    };
     let seconds = std::iter::successors(Some(SECONDS.0), |seconds| Some(SECONDS.1 * seconds));
-    let seconds: Vec<f64> = seconds.take_while(|seconds| *seconds < SECONDS.2).collect();
-    let curves = (0..CURVES).map(|n| 2.0 * n as f64 / (CURVES - 1) as f64 - 1.0);
-    let swept =
-        curves.flat_map(|curve| seconds.iter().map(move |seconds| Movement { seconds: *seconds, curve, ..still }));
-    let swept: Vec<Movement> = swept.collect();
-    let least = |movements: &mut dyn Iterator<Item = Movement>, sweeps: bool, trembles: bool| {
-        let error = |movement: &Movement| movement.explain(points, sweeps, trembles).1;
-        movements.min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or(still)
-    };
-    let rates = ((RATES.2 - RATES.0) / RATES.1) as usize;
-    let trembling = |movement: Movement| {
-        let rate = |n: usize| RATES.0 + RATES.1 * n as f64;
-        let rates = (0..=rates).map(rate).filter(|rate| rate * end > LEAST_CYCLES);
-        rates.flat_map(|rate| DELAYS.map(|delay| Movement { rate, delay, ..movement })).collect::<Vec<_>>().into_iter()
-    };
-    let refined = |mut best: Movement, sweeps: bool, trembles: bool| {
-        let (mut sweep, mut error) = best.explain(points, sweeps, trembles);
-        let mut step = 0.5;
-        for _ in 0..ROUNDS {
-            for number in if sweeps { 0 } else { 2 }..if trembles { 4 } else { 2 } {
-                for signed in [-step, step] {
-                    let other = best.moved(number, signed);
-                    let (found, least) = other.explain(points, sweeps, trembles);
-                    if least < error {
-                        (best, sweep, error) = (other, found, least);
-                    }
-                }
-            }
-            step *= 0.7;
-        }
-        (best, sweep, error)
-    };
-    let alone = solve(points, |_| [1.0]).1;
-    let (fall, sweep, of_sweep) = refined(least(&mut swept.into_iter(), true, false), true, false);
+    let seconds = seconds.take_while(|seconds| *seconds < SECONDS.2);
+    let curve = |n: usize| 2.0 * n as f64 / (CURVES - 1) as f64 - 1.0;
+    let mut swept = seconds
+        .flat_map(|seconds| (0..CURVES).map(move |n| (seconds, curve(n))))
+        .map(|(seconds, curve)| Sweep { seconds, curve, ..Sweep::NONE });
+    let alone = solve(points, |_| [0.0; 2]).1;
+    let (sweep, of_sweep) = least(&mut swept, true, false);
     let sweeps = of_sweep < (1.0 - WORTH) * alone && fabs(sweep.semitones) > LEAST_SWEEP;
-    let (fall, without) = if sweeps { (fall, of_sweep) } else { (still, alone) };
-    let start = least(&mut trembling(fall), sweeps, true);
-    let (_, both, of_both) = refined(start, sweeps, true);
-    if of_both < (1.0 - WORTH) * without && both.vibrato.semitones > LEAST_VIBRATO {
-        return both;
-    }
-    if sweeps { sweep } else { Sweep::NONE }
+    let (sweep, without) = if sweeps { (sweep, of_sweep) } else { (Sweep::NONE, alone) };
+    let rates = (0..=((RATES.2 - RATES.0) / RATES.1) as usize).map(|n| RATES.0 + RATES.1 * n as f64);
+    let mut trembling = rates
+        .filter(|rate| rate * end > LEAST_CYCLES)
+        .flat_map(|rate| DELAYS.map(|delay| Vibrato { rate, delay, ..Sweep::NONE.vibrato }))
+        .map(|vibrato| Sweep { vibrato, ..sweep });
+    let (both, of_both) = least(&mut trembling, sweeps, true);
+    if of_both < (1.0 - WORTH) * without && both.vibrato.semitones > LEAST_VIBRATO { both } else { sweep }
 }

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::io::sound_file::{Recording, resampled};
 
 /// Shortest stretch in seconds that is fitted.
-pub(super) const SHORTEST: f64 = 0.03;
+const SHORTEST: f64 = 0.03;
 /// Lowest peak of a sound that is not silent: −80 dBFS.
 const SILENCE: f64 = 1e-4;
 /// Level relative to the loudest below which the sound is over: −64 dB.

@@ -1,32 +1,36 @@
 //! Brings a draft nearer to its recording: plays it, compares both band by band, and corrects the draft.
 
 use super::audition::{Audition, Played};
-use super::correct::{by_bands, by_moments};
+use super::correct::{by_bands, by_levels, by_moments};
 use super::draft::Draft;
-use super::movement::Swell;
 use super::prepared::Prepared;
-use crate::analysis::log_mel::{HOP, LogMel, MelBands, WINDOW};
+use crate::analysis::log_mel::{HOP, LogMel, MelBands, WINDOW, from_onset};
 use crate::error::{Error, Result};
-use crate::params::Param;
 
-/// Hardnesses that are tried.
-const HARDNESSES: [f64; 10] = [0.95, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25, 0.15, 0.05];
-/// Swells that are tried: each of the seconds with each of the curves, at first with so many dB.
-const SWELLS: [f64; 8] = [0.02, 0.04, 0.08, 0.15, 0.3, 0.6, 1.2, 2.4];
-const CURVES: [f64; 3] = [0.0, 0.5, 0.9];
-const SWELL_DB: f64 = 36.0;
-/// Then the best one's seconds and dB are multiplied by these factors, and these seconds are tried for its fall.
-const LONGER: [f64; 2] = [1.0, 1.6];
-const DEEPER: [f64; 3] = [0.5, 1.4, 1.8];
-const FALLS: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 /// Distance in dB below which nothing nearer is looked for.
 pub(super) const NEAR_DB: f64 = 0.4;
 /// Windows of the attack: 150 ms.
 const ATTACK: usize = 26;
 /// Frames by which the onset of what is played may be late.
 const LATE: usize = 1024;
-/// Factors of the depths of oscillators that are tried, one after the other.
-const DEPTHS: [f64; 4] = [1.4, 1.2, 1.1, 0.9];
+/// Shares by which the numbers of a draft are changed, one after the other.
+const STEPS: [f64; 3] = [0.4, 0.2, 0.1];
+/// Corrections of a draft with its noise, and of levels, before it is judged.
+const FEW_ROUNDS: usize = 2;
+const LEVELLINGS: usize = 3;
+
+/// What of a draft is judged, and corrected before.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Judged {
+    /// Its attack.
+    ByAttack,
+    /// All of it.
+    AsItIs,
+    /// All of it with corrected levels: decays would take over what is wrong in a noise that lasts as long as the sound.
+    ByLevels,
+    /// All of it with corrected modes if its noise is audible, since their decays are measured together with that.
+    ByModes,
+}
 
 /// Plays drafts and measures how far they are from a recording. Reports the progress each time.
 pub(super) struct Listener<'a> {
@@ -64,7 +68,7 @@ impl<'a> Listener<'a> {
             .min(windows.saturating_mul(HOP).saturating_add(WINDOW / 2));
         let played = Played { key: draft.key(), velocity: draft.velocity, frames: frames + LATE, let_go: None };
         let sound = self.audition.mean(&draft.patch(), played);
-        let sound = crate::analysis::log_mel::from_onset(&sound);
+        let sound = from_onset(&sound);
         let mut heard = self.bands.measure(&sound[..sound.len().min(frames)]);
         heard.columns.truncate(windows);
         Ok(heard)
@@ -85,16 +89,28 @@ impl<'a> Listener<'a> {
         Ok(heard.distance(&start))
     }
 
-    /// Replaces the draft by the best of `others` over the first windows, if that is better.
-    pub(super) fn best(
+    /// The distance of a draft that is judged so, and corrected before.
+    fn judge(&mut self, draft: &mut Draft, by: Judged) -> Result<f64> {
+        match by {
+            Judged::ByAttack => self.distance(draft, ATTACK),
+            Judged::AsItIs => self.distance(draft, usize::MAX),
+            Judged::ByLevels => self.correct_levels(draft),
+            Judged::ByModes if draft.noise.is_audible() => self.correct(draft, FEW_ROUNDS),
+            Judged::ByModes => self.distance(draft, usize::MAX),
+        }
+    }
+
+    /// Replaces the draft by the nearest of `others`, if that is nearer.
+    pub(super) fn keep(
         &mut self,
         draft: &mut Draft,
-        windows: usize,
+        by: Judged,
         others: impl IntoIterator<Item = Draft>,
     ) -> Result<()> {
+        let windows = if by == Judged::ByAttack { ATTACK } else { usize::MAX };
         let mut least = self.distance(draft, windows)?;
-        for other in others {
-            let distance = self.distance(&other, windows)?;
+        for mut other in others {
+            let distance = self.judge(&mut other, by)?;
             if distance < least {
                 (*draft, least) = (other, distance);
             }
@@ -102,82 +118,30 @@ impl<'a> Listener<'a> {
         Ok(())
     }
 
-    /// Chooses the hardness of the mallet by the attack.
-    pub(super) fn choose_hardness(&mut self, draft: &mut Draft) -> Result<()> {
-        let with = |draft: &Draft, hardness| Draft { hardness, ..draft.clone() };
-        let coarse: Vec<Draft> = HARDNESSES.iter().map(|hardness| with(draft, Some(*hardness))).collect();
-        self.best(draft, ATTACK, coarse)?;
-        for step in [0.05, 0.025, 0.012] {
-            if let Some(hardness) = draft.hardness {
-                let near = [-step, step].map(|by| with(draft, Some((hardness + by).clamp(0.0, 1.0))));
-                self.best(draft, ATTACK, near)?;
+    /// Changes a draft by steps of [`STEPS`] as long as it comes nearer: `near` gives the drafts that are a step from one.
+    pub(super) fn descend(
+        &mut self,
+        draft: &mut Draft,
+        by: Judged,
+        near: impl Fn(&Draft, f64) -> Vec<Draft>,
+    ) -> Result<()> {
+        STEPS.into_iter().try_for_each(|step| self.keep(draft, by, near(draft, step)))
+    }
+
+    /// Corrects the levels alone of the modes of a draft, and returns its distance.
+    pub(super) fn correct_levels(&mut self, draft: &mut Draft) -> Result<f64> {
+        let mut heard = self.hear(draft)?;
+        let mut least = heard.distance(&self.target);
+        for _ in 0..LEVELLINGS {
+            let other = by_levels(draft, &self.target, &heard);
+            heard = self.hear(&other)?;
+            let distance = heard.distance(&self.target);
+            if distance >= least {
+                break;
             }
+            (*draft, least) = (other, distance);
         }
-        Ok(())
-    }
-
-    /// Chooses the rise of a sound that is not struck, and its fall if it does not stay at its level.
-    pub(super) fn choose_swell(&mut self, draft: &mut Draft) -> Result<()> {
-        let fall = draft.swell.and_then(|swell| swell.fall);
-        let swell = |seconds| CURVES.map(|curve| Swell { seconds, depth: SWELL_DB, curve, fall });
-        self.best_swell(draft, SWELLS.into_iter().flat_map(swell))?;
-        if let Some(swell) = draft.swell {
-            let larger = |longer| {
-                DEEPER.map(|deeper| Swell { seconds: longer * swell.seconds, depth: deeper * swell.depth, ..swell })
-            };
-            self.best_swell(draft, LONGER.into_iter().flat_map(larger))?;
-        }
-        for step in [0.35, 0.2, 0.1] {
-            let factors = [1.0 - step, 1.0 + step];
-            let Some(swell) = draft.swell else { break };
-            let times = factors.map(|factor| Swell { seconds: factor * swell.seconds, ..swell });
-            let depths = factors.map(|factor| Swell { depth: factor * swell.depth, ..swell });
-            let curves = [-step, step].map(|by| Swell { curve: (swell.curve + by).clamp(-1.0, 1.0), ..swell });
-            self.best_swell(draft, times.into_iter().chain(depths).chain(curves))?;
-            let Some(swell) = draft.swell else { break };
-            let falls = match swell.fall {
-                // What is held stays at its level.
-                None if draft.is_held => Vec::new(),
-                None => FALLS.to_vec(),
-                Some(fall) => factors.map(|factor| factor * fall).to_vec(),
-            };
-            self.best_swell(draft, falls.into_iter().map(|fall| Swell { fall: Some(fall), ..swell }))?;
-        }
-        Ok(())
-    }
-
-    /// Replaces the draft's swell by the best of some, if that is better.
-    fn best_swell(&mut self, draft: &mut Draft, swells: impl Iterator<Item = Swell>) -> Result<()> {
-        let before = draft.clone();
-        self.best(draft, usize::MAX, swells.map(|swell| Draft { swell: Some(swell), ..before.clone() }))
-    }
-
-    /// Keeps the oscillators only if the sound is nearer with them, and changes the depths in which they move the level.
-    pub(super) fn choose_oscillators(&mut self, draft: &mut Draft) -> Result<()> {
-        if draft.oscillators.is_empty() {
-            return Ok(());
-        }
-        let [least, most] = [Param::Gain.info().min, Param::Gain.info().max].map(f64::from);
-        let mut nearest = self.distance(draft, usize::MAX)?;
-        for n in 0..draft.oscillators.len() {
-            for factor in DEPTHS {
-                let mut other = draft.clone();
-                other.oscillators[n].db *= factor;
-                let sum: f64 = other.oscillators.iter().map(|oscillator| oscillator.db.abs()).sum();
-                if other.oscillators[n].db == 0.0 || sum >= most - least {
-                    continue;
-                }
-                let distance = self.distance(&other, usize::MAX)?;
-                if distance < nearest {
-                    (*draft, nearest) = (other, distance);
-                }
-            }
-        }
-        let without = Draft { oscillators: Vec::new(), ..draft.clone() };
-        if self.distance(&without, usize::MAX)? < nearest {
-            *draft = without;
-        }
-        Ok(())
+        Ok(least)
     }
 
     /// Corrects level and decay of the modes, as long as the distance falls. Returns the distance.

@@ -6,9 +6,11 @@ use crate::analysis::figure::sound::{DrawnMode, Ranges, SoundFigure, modes_of};
 use crate::analysis::modes::Mode;
 use crate::error::Result;
 use crate::figure::page::{STYLE, data_link, escaped, fill};
+use crate::io::{SampleFormat, WavFormat, WavWriter};
 use crate::text::number::measured;
 use crate::units::frequency_from_key;
 use libm::{fabs, log2};
+use std::io::Cursor;
 
 const PAGE: &str = include_str!("report.html");
 
@@ -34,13 +36,14 @@ pub fn html(fitted: &Fitted, title: &str) -> Result<String> {
     let figures: [Result<String>; 2] = [figure("Recording", renders[0], &[]), figure("Preset", renders[1], &modes)];
     let [recording, preset] = figures;
     let (recording, preset) = (recording?, preset?);
+    let sounds = [wav([first, last], fitted.sample_rate())?, wav([left, right], fitted.sample_rate())?];
     Ok(fill(PAGE, |name| match name {
         "style" => STYLE.to_owned(),
         "title" => escaped(title),
         "summary" => escaped(&format!("{}{}", fitted.summary(), others(fitted))),
         "warnings" => fitted.warnings.iter().map(|warning| format!("<p>Warning: {}</p>\n", escaped(warning))).collect(),
-        "recording" => data_link("audio/wav", &wav([first, last], fitted.sample_rate() as u32)),
-        "preset" => data_link("audio/wav", &wav([left, right], fitted.sample_rate() as u32)),
+        "recording" => data_link("audio/wav", &sounds[0]),
+        "preset" => data_link("audio/wav", &sounds[1]),
         "recording-figure" => recording.clone(),
         "preset-figure" => preset.clone(),
         "note" => escaped(&note(fitted, &modes)),
@@ -103,25 +106,11 @@ fn rows(fitted: &Fitted, modes: &[DrawnMode]) -> String {
 }
 
 /// A WAV file in memory, of 16 bits.
-fn wav([left, right]: [&[f32]; 2], sample_rate: u32) -> Vec<u8> {
-    let bytes = 4 * left.len().min(right.len()) as u32;
-    let mut file = Vec::with_capacity(44 + bytes as usize);
-    file.extend(b"RIFF");
-    file.extend((36 + bytes).to_le_bytes());
-    file.extend(b"WAVEfmt ");
-    file.extend(16_u32.to_le_bytes());
-    // PCM, two channels.
-    file.extend([1, 0, 2, 0]);
-    file.extend(sample_rate.to_le_bytes());
-    file.extend((4 * sample_rate).to_le_bytes());
-    // Bytes of a frame, bits of a sample.
-    file.extend([4, 0, 16, 0]);
-    file.extend(b"data");
-    file.extend(bytes.to_le_bytes());
-    for pair in left.iter().zip(right) {
-        for sample in [pair.0, pair.1] {
-            file.extend(((sample.clamp(-1.0, 1.0) * 32_767.0).round() as i16).to_le_bytes());
-        }
-    }
-    file
+fn wav([left, right]: [&[f32]; 2], sample_rate: f64) -> Result<Vec<u8>> {
+    let format = WavFormat { sample_rate: sample_rate as u32, channels: 2, samples: SampleFormat::Int16 };
+    let mut file = Vec::new();
+    let mut writer = WavWriter::new(Cursor::new(&mut file), "report", format, None, None)?;
+    writer.write(left, right)?;
+    writer.finish()?;
+    Ok(file)
 }

@@ -18,9 +18,7 @@ const TOO_LOUD_DB: f64 = 12.0;
 /// Modes this many dB below the loudest are left to the bed.
 const FAINT_DB: f64 = 75.0;
 /// Largest level in dB that a mode gains by going back to the onset from where it was found.
-pub(super) const MOST_BEFORE_DB: f64 = 40.0;
-/// The same for a mode of a sound that rises slowly.
-const MOST_OF_A_SWELL_DB: f64 = 6.0;
+const MOST_BEFORE_DB: f64 = 40.0;
 /// Seconds of the sound that are analysed, at most.
 const LONGEST: f64 = 5.0;
 /// Largest decay in dB over which a mode's level is extrapolated back to the onset.
@@ -60,9 +58,8 @@ pub(super) fn draft(
     let still: Vec<Vec<f32>> = take.channels.iter().map(still).collect();
     let strike = strike(&still, most_modes, progress)?;
     // In a held sound many modes can stand for one whose pitch moves. They would cancel with their measured phases once their levels
-    // are corrected, so all start as sines. But modes that are searched for after a slow rise are there for the beats that begin then.
-    let has_phases = !take.is_held || source.late > 0.0;
-    Ok((from(take, strike.as_ref(), &source, has_phases), strike))
+    // are corrected, so all start as sines.
+    Ok((from(take, strike.as_ref(), &source, !take.is_held), strike))
 }
 
 /// The modes of a sound at [`RATE`], a list of samples per channel; none if it does not ring at all.
@@ -102,19 +99,13 @@ pub(super) fn from(take: &Prepared, strike: Option<&Strike>, source: &Source, ha
         let kept: Vec<&Mode> = kept.into_iter().filter(|mode| mode.level_db > loudest - FAINT_DB).collect();
         let after = strike.fitted_from - strike.onset;
         let amplitudes: Vec<f64> = kept.iter().map(|mode| at_onset(mode, after)).collect();
-        // A strike's modes that were searched for later are turned back to the onset. Those found at the onset are moved to where most
-        // start as sines, since nobody hears a shift of all. Noise has no phases.
-        let (shift, before) = if late > 0.0 && struck {
-            (-(late + strike.onset), late + strike.onset)
-        } else {
-            (delay(&kept, &amplitudes), late)
-        };
+        // They are moved to where most start as sines, since nobody hears a shift of all. Noise has no phases.
+        let shift = delay(&kept, &amplitudes);
         let struck_so = |(mode, amplitude): (&&Mode, &f64)| {
             let partial = partial(mode, *amplitude, shift);
             let partial = Partial { t60: partial.t60.min(longest), ..partial };
             let phase = if has_phases && struck { partial.phase } else { 0.0 };
-            let most = if struck { MOST_OF_A_SWELL_DB } else { MOST_BEFORE_DB };
-            Partial { phase, struck, ..partial }.earlier(before, most)
+            Partial { phase, struck, ..partial }.earlier(late, MOST_BEFORE_DB)
         };
         partials.extend(kept.iter().zip(&amplitudes).map(struck_so));
     }
@@ -173,7 +164,6 @@ fn partial(mode: &Mode, amplitude: f64, later: f64) -> Partial {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::super::prepared::tests::prepared;
     use super::*;
     use crate::analysis::modes::Uncertainty;
 
@@ -198,27 +188,6 @@ pub(super) mod tests {
             let expected = [sin(phase), cos(phase)].map(|part| 0.5 * part);
             assert!((0..2).all(|n| fabs(played[n] - expected[n]) < 1e-12), "{phase}: {known:?}");
             assert_eq!(partial(&mode(phase, 1.0), 0.5, 0.0).phase, 0.0);
-        }
-    }
-
-    #[test]
-    fn tones_found_after_a_slow_rise_beat_as_they_do_there() {
-        let late = 0.4;
-        let beating = |t: f64| {
-            0.2 * libm::exp(-0.5 * t) * sin(2.0 * PI * 440.0 * t) + 0.2 * libm::exp(-t) * cos(2.0 * PI * 443.0 * t)
-        };
-        let seconds = |n: usize| n as f64 / f64::from(RATE);
-        let sound = |n: usize| ((seconds(n) / (0.8 * late)).min(1.0) * beating(seconds(n))) as f32;
-        let take = prepared((0..RATE as usize).map(sound).collect(), RATE);
-        let source = Source { swept: Sweep::NONE, late, struck: true };
-        let (draft, _) = draft(&take, source, 16, &mut |_| true).unwrap();
-        for n in (RATE as usize / 2..take.mean.len()).step_by(100) {
-            let of = |partial: &Partial| {
-                let fall = pow(0.001, seconds(n) / partial.t60);
-                partial.amplitude * fall * sin(2.0 * PI * partial.frequency * seconds(n) + partial.phase)
-            };
-            let played: f64 = draft.partials.iter().map(of).sum();
-            assert!(fabs(played - f64::from(take.mean[n])) < 0.01, "{n}: {played}");
         }
     }
 }

@@ -23,10 +23,7 @@ use libm::exp;
 const HARDNESSES: u32 = 20;
 const STARTS: usize = 3;
 /// Steps of the search from each start.
-const STEPS: usize = 60;
-/// Rounds of a finer search after each of these, and the step of the first round; each round has a smaller step.
-const ROUNDS: usize = 7;
-const FINEST_FROM: f64 = 0.06;
+const STEPS: usize = 120;
 /// dB of distance that are as bad as a deviation of the modes' levels by 1 dB.
 const WORTH_OF_LEVELS: f64 = 2.0;
 /// Tilt in dB per octave per unit of the search.
@@ -72,8 +69,8 @@ pub(super) fn patch(
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
     starts.truncate(STARTS);
     let mut best = (f64::INFINITY, draft.patch());
-    // A step of the simplex mostly tries one or two places, a round two for each of six numbers.
-    let most = (starts.len() * (2 * STEPS + ROUNDS * 12)) as f64;
+    // A step of the simplex mostly tries one or two places.
+    let most = (starts.len() * 2 * STEPS) as f64;
     let mut tried = 0.0;
     for (_, hardness, body) in starts {
         let mut error = |place: [f64; 6]| {
@@ -85,22 +82,8 @@ pub(super) fn patch(
             let mut patch = struck(draft, &body, hardness);
             Ok((heard(&body, &mut patch), patch))
         };
-        let (mut place, _) = simplex::least(STEPS, |place| Ok(error(place)?.0))?;
-        let mut found = error(place)?;
-        let mut step = FINEST_FROM;
-        for _ in 0..ROUNDS {
-            for number in 0..place.len() {
-                for by in [-step, step] {
-                    let mut other = place;
-                    other[number] += by;
-                    let next = error(other)?;
-                    if next.0 < found.0 {
-                        (place, found) = (other, next);
-                    }
-                }
-            }
-            step *= 0.6;
-        }
+        let (place, _) = simplex::least(STEPS, |place| Ok(error(place)?.0))?;
+        let found = error(place)?;
         if found.0 < best.0 {
             best = found;
         }
