@@ -10,6 +10,7 @@ use egui::{Event, Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use sprung::internals::library::Library;
 use sprung::params::Param;
+use sprung::patch::routes::amount_param;
 use sprung::preset::{KitPreset, Playable};
 use sprung::sound::Pad;
 
@@ -340,6 +341,20 @@ fn a_pad_that_shares_its_sound_is_edited_by_itself() {
     let values = |key: u8| kit.sounds[kit.pads.iter().find(|(own, _)| *own == key).unwrap().1.sound].1.patch.values;
     assert_eq!((values(38), kit.sounds.len()), (changed, 2));
     assert_ne!(values(36), changed);
+}
+
+#[test]
+fn the_routes_of_a_pad_are_shown_as_the_knobs_move_them() {
+    let mut stage = at("Acoustic Kit", SIZE, Theme::Dark);
+    let place = stage.kit().sounds[stage.pad(42).unwrap().1.sound].1.patch.routes.iter().next().unwrap().0;
+    let amount = amount_param(place);
+    stage.params.knobs()[amount as usize].turn(0.3127);
+    let Playable::Kit(heard) = stage.params.state().into_sound() else { panic!("a kit") };
+    let hat = stage.place("F#2");
+    stage.drag(hat, vec2(0.0, 0.0), Modifiers::NONE);
+    stage.tab("Motion");
+    let moved = heard.sounds[stage.pad(42).unwrap().1.sound].1.patch.get(amount);
+    assert!(moved < 0.0 && stage.paints(&amount.info().format(moved)), "{moved}");
 }
 
 #[test]
