@@ -189,13 +189,15 @@ impl State {
 
     /// The state with the sound of a kit's pad alone, as it is heard, to be edited. None if the key has no pad.
     pub(crate) fn of_pad(self, key: u8) -> Option<Self> {
-        let Self { seed, view, .. } = self;
+        let Self { values, seed, view, .. } = self;
         let Playable::Kit(kit) = self.into_sound() else { return None };
         let (_, pad) = kit.pads.iter().find(|(own, _)| *own == key)?;
         let (_, preset) = kit.sounds.get(pad.sound)?.clone();
         let pad = Some(EditedPad { key, kit: Arc::new(kit) });
         Some(Self { pad, ..Self::new(Playable::Preset(preset), seed, view) })
     }
+        // One sound is heard with the kit's effects; several keep those that they have now, whatever becomes of this one.
+        let kit = if kit.sounds.len() == 1 { kit.with_values(&values) } else { kit.with_effects(&values) };
 
     /// The part of the state for the audio thread. Computes the sounds.
     pub(crate) fn loaded(&self) -> Loaded {
