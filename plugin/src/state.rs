@@ -157,10 +157,15 @@ impl State {
 
     /// The state of a sound as a resonator. A sound that no incoming sound drives has it at 0 dB, and nothing else moves its
     /// masses, by a route neither; one that has an input level stays as its author has made it. In a kit, the knobs move each
-    /// sound by as much, so that what a route or a louder exciter adds may stay.
+    /// sound by as much, so that what a route or a louder exciter adds may stay; if any sound has an input level, all stay.
     pub(crate) fn driven(mut self) -> Self {
         let input = Param::InputLevel;
-        if self.values.get(input) > input.info().min {
+        let is_driven = |values: &Values| values.get(input) > input.info().min;
+        let is_any_driven = match &self.playable {
+            Playable::Preset(_) => false,
+            Playable::Kit(kit) => kit.sounds.iter().any(|(_, preset)| is_driven(&preset.patch.values)),
+        };
+        if is_driven(&self.values) || is_any_driven {
             return self;
         }
         let mut set = vec![(input, 0.0)];

@@ -97,6 +97,17 @@ fn a_kit_is_kept_with_its_presets() {
     assert!(complaints.iter().zip(starts).all(|(line, start)| line.starts_with(start)), "{complaints:?}");
 }
 
+#[test]
+fn a_kit_whose_sounds_are_driven_is_not_driven_again() {
+    let input = |kit: &KitPreset| kit.sounds.iter().map(|(_, preset)| preset.patch.get(Param::InputLevel)).collect();
+    let driven = odd_kit().driven();
+    assert_eq!(driven.values.get(Param::InputLevel), 0.0);
+    let back = State::new(driven.into_sound(), 0, VIEW).driven();
+    let Playable::Kit(kit) = back.into_sound() else { panic!("a kit") };
+    let inputs: Vec<f32> = input(&kit);
+    assert_eq!(inputs, [0.0, 0.0]);
+}
+
 /// Replaces a part of a state's JSON.
 fn change(json: &str, from: &str, to: &str) -> String {
     assert!(json.contains(from), "{from} in {json}");
