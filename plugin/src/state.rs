@@ -196,13 +196,13 @@ impl State {
     pub(crate) fn of_pad(self, key: u8) -> Option<Self> {
         let Self { values, seed, view, .. } = self;
         let Playable::Kit(kit) = self.into_sound() else { return None };
+        // One sound is heard with the kit's effects; several keep those that they have now, whatever becomes of this one.
+        let kit = if kit.sounds.len() == 1 { kit.with_values(&values) } else { kit.with_effects(&values) };
         let (_, pad) = kit.pads.iter().find(|(own, _)| *own == key)?;
         let (_, preset) = kit.sounds.get(pad.sound)?.clone();
         let pad = Some(EditedPad { key, kit: Arc::new(kit) });
         Some(Self { pad, ..Self::new(Playable::Preset(preset), seed, view) })
     }
-        // One sound is heard with the kit's effects; several keep those that they have now, whatever becomes of this one.
-        let kit = if kit.sounds.len() == 1 { kit.with_values(&values) } else { kit.with_effects(&values) };
 
     /// The part of the state for the audio thread. Computes the sounds.
     pub(crate) fn loaded(&self) -> Loaded {
@@ -266,7 +266,12 @@ impl State {
         };
         let view = read_view(&saved, &mut complaints);
         let mut state = Self::new(playable, seed.unwrap_or(0), view);
-        state.pad = saved.get("pad").and_then(|pad| read_pad(pad, &mut complaints));
+        if let Some(pad) = saved.get("pad") {
+            match &state.playable {
+                Playable::Preset(_) => state.pad = read_pad(pad, &mut complaints),
+                Playable::Kit(_) => complaints.push("pad: expected a preset beside it, found a kit".to_owned()),
+            }
+        }
         if let Playable::Kit(_) = state.playable {
             for (param, value) in numbers(&saved, "values", &mut complaints) {
                 match param.info().check(value) {
@@ -318,7 +323,7 @@ fn read_pad(pad: &Value, complaints: &mut Vec<String>) -> Option<EditedPad> {
     let read = Playable::parse_lenient(text, "the pad's kit", &mut |name| Preset::find(name).cloned());
     match (key, read) {
         (Some(key), Ok((Playable::Kit(kit), lines))) if kit.pads.iter().any(|(own, _)| *own == key) => {
-            complaints.extend(lines);
+            complaints.extend(lines.into_iter().map(|line| format!("pad: {line}")));
             Some(EditedPad { key, kit: Arc::new(kit) })
         }
         _ => {
