@@ -157,10 +157,15 @@ impl State {
 
     /// The state of a sound as a resonator. A sound that no incoming sound drives has it at 0 dB, and nothing else moves its
     /// masses, by a route neither; one that has an input level stays as its author has made it. In a kit, the knobs move each
-    /// sound by as much, so that what a route or a louder exciter adds may stay.
+    /// sound by as much, so that what a route or a louder exciter adds may stay; if any sound has an input level, all stay.
     pub(crate) fn driven(mut self) -> Self {
         let input = Param::InputLevel;
-        if self.values.get(input) > input.info().min {
+        let is_driven = |values: &Values| values.get(input) > input.info().min;
+        let is_any_driven = match &self.playable {
+            Playable::Preset(_) => false,
+            Playable::Kit(kit) => kit.sounds.iter().any(|(_, preset)| is_driven(&preset.patch.values)),
+        };
+        if is_driven(&self.values) || is_any_driven {
             return self;
         }
         let mut set = vec![(input, 0.0)];
@@ -189,8 +194,10 @@ impl State {
 
     /// The state with the sound of a kit's pad alone, as it is heard, to be edited. None if the key has no pad.
     pub(crate) fn of_pad(self, key: u8) -> Option<Self> {
-        let Self { seed, view, .. } = self;
+        let Self { values, seed, view, .. } = self;
         let Playable::Kit(kit) = self.into_sound() else { return None };
+        // One sound is heard with the kit's effects; several keep those that they have now, whatever becomes of this one.
+        let kit = if kit.sounds.len() == 1 { kit.with_values(&values) } else { kit.with_effects(&values) };
         let (_, pad) = kit.pads.iter().find(|(own, _)| *own == key)?;
         let (_, preset) = kit.sounds.get(pad.sound)?.clone();
         let pad = Some(EditedPad { key, kit: Arc::new(kit) });
@@ -259,7 +266,12 @@ impl State {
         };
         let view = read_view(&saved, &mut complaints);
         let mut state = Self::new(playable, seed.unwrap_or(0), view);
-        state.pad = saved.get("pad").and_then(|pad| read_pad(pad, &mut complaints));
+        if let Some(pad) = saved.get("pad") {
+            match &state.playable {
+                Playable::Preset(_) => state.pad = read_pad(pad, &mut complaints),
+                Playable::Kit(_) => complaints.push("pad: expected a preset beside it, found a kit".to_owned()),
+            }
+        }
         if let Playable::Kit(_) = state.playable {
             for (param, value) in numbers(&saved, "values", &mut complaints) {
                 match param.info().check(value) {
@@ -311,7 +323,7 @@ fn read_pad(pad: &Value, complaints: &mut Vec<String>) -> Option<EditedPad> {
     let read = Playable::parse_lenient(text, "the pad's kit", &mut |name| Preset::find(name).cloned());
     match (key, read) {
         (Some(key), Ok((Playable::Kit(kit), lines))) if kit.pads.iter().any(|(own, _)| *own == key) => {
-            complaints.extend(lines);
+            complaints.extend(lines.into_iter().map(|line| format!("pad: {line}")));
             Some(EditedPad { key, kit: Arc::new(kit) })
         }
         _ => {

@@ -14,12 +14,12 @@ impl ParamInfo {
     }
 
     /// A value, moved by an offset in knob travel.
-    pub(crate) fn moved(&self, value: f32, offset: f32) -> f32 {
+    pub fn moved(&self, value: f32, offset: f32) -> f32 {
         if offset == 0.0 { value } else { self.denormalise(self.normalise(value) + f64::from(offset)) }
     }
 
     /// The knob travel from the default to a value.
-    pub(crate) fn travel(&self, value: f32) -> f32 {
+    pub fn travel(&self, value: f32) -> f32 {
         (self.normalise(value) - self.normalise(self.default)) as f32
     }
 

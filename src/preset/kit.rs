@@ -49,7 +49,7 @@ impl KitPreset {
     pub fn with_values(mut self, values: &Values) -> Self {
         let [(_, preset)] = &mut self.sounds[..] else { return self.with_moves(values) };
         preset.patch.values = *values;
-        self.take_effects(values)
+        self.with_effects(values)
     }
 
     /// The kit with the values of knobs of several sounds: each sound is as far from its own value, in knob travel, as the knob is
@@ -64,11 +64,12 @@ impl KitPreset {
                 patch.set(info.param, info.moved(patch.get(info.param), info.travel(values.get(info.param))))
             });
         }
-        self.take_effects(values)
+        self.with_effects(values)
     }
 
     /// The kit with these values behind the voices, whatever sounds it has.
-    fn take_effects(mut self, values: &Values) -> Self {
+    #[must_use]
+    pub fn with_effects(mut self, values: &Values) -> Self {
         let behind = PARAMS.iter().filter(|info| info.param.is_behind_voices());
         let is_own = |info: &&ParamInfo| {
             let value = values.get(info.param);

@@ -97,6 +97,31 @@ fn a_kit_is_kept_with_its_presets() {
     assert!(complaints.iter().zip(starts).all(|(line, start)| line.starts_with(start)), "{complaints:?}");
 }
 
+#[test]
+fn a_pad_is_read_only_beside_a_preset_and_its_lines_say_whose_they_are() {
+    let edited = odd_kit().of_pad(36).unwrap().to_json();
+    let mut saved: Map<String, Value> = serde_json::from_str(&odd_kit().to_json()).unwrap();
+    saved.insert("pad".to_owned(), serde_json::from_str::<Value>(&edited).unwrap()["pad"].clone());
+    let Read { state, complaints } = State::parse(&serde_json::to_string(&saved).unwrap()).unwrap();
+    assert_eq!((state, complaints.len()), (odd_kit(), 1), "{complaints:?}");
+    assert!(complaints[0].starts_with("pad: expected a preset"), "{complaints:?}");
+    let newer = change(&edited, "[sounds.Kick.params]\\n", "[sounds.Kick.params]\\ngain_boost = 99\\n");
+    let Read { state, complaints } = State::parse(&newer).unwrap();
+    assert!(state.pad.is_some() && complaints.len() == 1, "{complaints:?}");
+    assert!(complaints[0].starts_with("pad: sounds.Kick: unknown key"), "{complaints:?}");
+}
+
+#[test]
+fn a_kit_whose_sounds_are_driven_is_not_driven_again() {
+    let input = |kit: &KitPreset| kit.sounds.iter().map(|(_, preset)| preset.patch.get(Param::InputLevel)).collect();
+    let driven = odd_kit().driven();
+    assert_eq!(driven.values.get(Param::InputLevel), 0.0);
+    let back = State::new(driven.into_sound(), 0, VIEW).driven();
+    let Playable::Kit(kit) = back.into_sound() else { panic!("a kit") };
+    let inputs: Vec<f32> = input(&kit);
+    assert_eq!(inputs, [0.0, 0.0]);
+}
+
 /// Replaces a part of a state's JSON.
 fn change(json: &str, from: &str, to: &str) -> String {
     assert!(json.contains(from), "{from} in {json}");

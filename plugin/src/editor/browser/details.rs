@@ -278,7 +278,7 @@ impl Details {
             Ok(path) => {
                 controls.params.rename(name);
                 controls.params.describe_as(&sound);
-                controls.history.saved();
+                controls.history.saved(controls.params);
                 Ok(format!("saved {}", path.display()))
             }
             Err(sprung::Error::Exists { path }) => {

@@ -93,8 +93,11 @@ impl History {
         self.end_step(name.to_owned(), true, is_changed, params);
     }
 
-    /// The sound was saved as it is.
-    pub(crate) fn saved(&mut self) {
+    /// The sound was saved as it is. That of a pad is a part of a kit, which was not.
+    pub(crate) fn saved(&mut self, params: &SprungParams) {
+        if params.pad().is_some() {
+            return;
+        }
         self.undo.iter_mut().chain(&mut self.redo).for_each(|step| step.is_changed = true);
         self.is_changed = false;
     }

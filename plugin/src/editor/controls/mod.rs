@@ -154,11 +154,7 @@ impl Controls<'_> {
     /// The value with which the shown sound is heard.
     pub(super) fn heard(&self, info: &ParamInfo) -> f32 {
         let value = self.value(info);
-        match self.own(info) {
-            Some(own) if value == info.default => own,
-            Some(own) => info.denormalise(info.normalise(own) + info.normalise(value) - info.normalise(info.default)),
-            None => value,
-        }
+        self.own(info).map_or(value, |own| info.moved(own, info.travel(value)))
     }
 
     /// What the line at the bottom tells of a parameter under `title`.

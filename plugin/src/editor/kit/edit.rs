@@ -14,7 +14,7 @@ use sprung::units::note_name;
 
 /// What comes of editing a pad.
 pub(in crate::editor) const EDITS: &str =
-    "Opens the sound alone, to change it; Put back, beside its name, returns it to its pad.";
+    "Opens the sound alone, to change it; Put back, beside its name, returns it to its pad. Effects stay the kit’s.";
 /// The key of the first pad of a new kit: that of a kick.
 pub(super) const FIRST: u8 = 36;
 

@@ -33,7 +33,7 @@ fn verb(route: &Route, amount: f32) -> &'static str {
 pub(in crate::editor) fn effects(info: &ParamInfo, patch: &Patch, controls: &Controls) -> Option<String> {
     let own = patch.routes.iter().filter(|(_, route)| route.source.id() == info.id);
     let effect = |(place, route): (usize, Route)| {
-        let amount = controls.value(amount_param(place).info());
+        let amount = controls.heard(amount_param(place).info());
         format!("{} {}", verb(&route, amount), route.destination.info().name)
     };
     let all: Vec<String> = own.map(effect).collect();
@@ -106,8 +106,7 @@ pub(in crate::editor) fn show(
                 }
                 Some(route) => {
                     let info = amount_param(place).info();
-                    // The knobs of a kit say how far it moves its sounds' values, and not these values.
-                    let amount = if is_editable { controls.value(info) } else { patch.get(info.param) };
+                    let amount = controls.heard(info);
                     let words = [
                         (source_name(route.source, guide), palette.modulation),
                         (format!(" {} ", verb(&route, amount)), palette.muted),

@@ -7,6 +7,7 @@ use crate::editor::controls::history::History;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
 use crate::params::SprungParams;
+use crate::state::State;
 use egui::{Event, Key, Modifiers, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use sprung::internals::library::Library;
@@ -366,7 +367,7 @@ fn a_sound_is_marked_while_it_differs_from_what_was_loaded_or_saved() {
     assert!(!history.is_changed(), "undone");
     history.redo(&params, &context);
     assert!(history.is_changed(), "redone");
-    history.saved();
+    history.saved(&params);
     assert!(!history.is_changed(), "saved");
     history.undo(&params, &context);
     assert!(history.is_changed(), "no longer what was saved");
@@ -375,6 +376,18 @@ fn a_sound_is_marked_while_it_differs_from_what_was_loaded_or_saved() {
     step(&mut history, -12.0);
     history.end_swap("version B", false, &params);
     assert!(!history.is_changed(), "the other version is as it was loaded");
+}
+
+#[test]
+fn a_changed_kit_stays_so_when_the_sound_of_its_pad_is_saved() {
+    let (params, mut history) = (SprungParams::default(), History::default());
+    let kit = State::new(Playable::find("Acoustic Kit").unwrap(), 0, params.view());
+    params.load(kit.clone().into());
+    history.begin(&params);
+    params.load(kit.of_pad(38).unwrap().into());
+    history.end_of_pad("edit".to_owned(), true, &params);
+    history.saved(&params);
+    assert!(history.is_changed());
 }
 
 #[test]

@@ -10,6 +10,7 @@ use egui::{Event, Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use sprung::internals::library::Library;
 use sprung::params::Param;
+use sprung::patch::routes::amount_param;
 use sprung::preset::{KitPreset, Playable};
 use sprung::sound::Pad;
 
@@ -340,6 +341,76 @@ fn a_pad_that_shares_its_sound_is_edited_by_itself() {
     let values = |key: u8| kit.sounds[kit.pads.iter().find(|(own, _)| *own == key).unwrap().1.sound].1.patch.values;
     assert_eq!((values(38), kit.sounds.len()), (changed, 2));
     assert_ne!(values(36), changed);
+}
+
+/// The acoustic kit with the pads of these keys alone.
+fn part_of_it(keys: &[u8]) -> KitPreset {
+    let Ok(Playable::Kit(mut kit)) = Playable::find("Acoustic Kit") else { panic!("it is there") };
+    kit.pads.retain(|(key, _)| keys.contains(key));
+    let sounds = std::mem::take(&mut kit.sounds);
+    for (place, (_, pad)) in kit.pads.iter_mut().enumerate() {
+        kit.sounds.push(sounds[pad.sound].clone());
+        pad.sound = place;
+    }
+    kit
+}
+
+#[test]
+fn the_effects_of_a_kit_stay_when_a_pad_is_edited_and_put_back() {
+    let heard = |stage: &Stage| stage.params.state().values.get(Param::SpaceMix);
+    let edit = |stage: &mut Stage, key: &str, position: Option<f32>| {
+        let pad = stage.place(key);
+        stage.drag(pad, vec2(0.0, 0.0), Modifiers::NONE);
+        stage.button("Edit this pad");
+        let alone = heard(stage);
+        position.into_iter().for_each(|position| stage.params.knobs()[Param::SpaceMix as usize].turn(position));
+        stage.button("Put back");
+        alone
+    };
+    let with = |kit: KitPreset| {
+        let mut stage = at("Acoustic Kit", SIZE, Theme::Dark);
+        stage.params.load(State::new(Playable::Kit(kit), 0, stage.params.view()).into());
+        stage.harness.run_steps(3);
+        stage
+    };
+    // One sound alone is heard with the kit's room, and has it in its kit again.
+    let mut stage = with(part_of_it(&[38]));
+    let room = heard(&stage);
+    assert!(room > Param::SpaceMix.info().min);
+    assert_eq!((edit(&mut stage, "D2", None), heard(&stage)), (room, room));
+    edit(&mut stage, "D2", Some(0.9));
+    assert!(heard(&stage) > room, "a single sound brings its effects");
+    // Several sounds that have an effect in common, in a kit that does not name it.
+    let mut kit = part_of_it(&[36, 38]);
+    kit.params.clear();
+    kit.sounds.iter_mut().for_each(|(_, preset)| preset.patch.set(Param::SpaceMix, 20.0));
+    let mut stage = with(kit);
+    edit(&mut stage, "D2", None);
+    assert!(heard(&stage) == 20.0 && !stage.paints("Acoustic Kit *"), "nothing was changed");
+    edit(&mut stage, "D2", Some(0.9));
+    assert_eq!(heard(&stage), 20.0);
+    // One that is the same on two pads becomes two.
+    let mut kit = part_of_it(&[36]);
+    kit.params.clear();
+    kit.sounds[0].1.patch.set(Param::SpaceMix, 20.0);
+    kit.pads.push((38, kit.pads[0].1.clone()));
+    let mut stage = with(kit);
+    edit(&mut stage, "D2", Some(0.9));
+    assert_eq!((stage.kit().sounds.len(), heard(&stage)), (2, 20.0));
+}
+
+#[test]
+fn the_routes_of_a_pad_are_shown_as_the_knobs_move_them() {
+    let mut stage = at("Acoustic Kit", SIZE, Theme::Dark);
+    let place = stage.kit().sounds[stage.pad(42).unwrap().1.sound].1.patch.routes.iter().next().unwrap().0;
+    let amount = amount_param(place);
+    stage.params.knobs()[amount as usize].turn(0.3127);
+    let Playable::Kit(heard) = stage.params.state().into_sound() else { panic!("a kit") };
+    let hat = stage.place("F#2");
+    stage.drag(hat, vec2(0.0, 0.0), Modifiers::NONE);
+    stage.tab("Motion");
+    let moved = heard.sounds[stage.pad(42).unwrap().1.sound].1.patch.get(amount);
+    assert!(moved < 0.0 && stage.paints(&amount.info().format(moved)), "{moved}");
 }
 
 #[test]

@@ -20,8 +20,14 @@ pub(super) struct Versions {
 /// What tells whether another sound is shown, without a copy of it: what was loaded, its name, and the positions of the knobs.
 type Shown = (Arc<Loaded>, String, Vec<u32>);
 
+/// The state without what is only said of the sound, beside its name.
+fn undescribed(mut state: State) -> State {
+    state.playable.describe(String::new(), Vec::new(), Default::default());
+    state
+}
+
 impl Versions {
-    /// Whether the two differ.
+    /// Whether the two differ in what is heard, or in name.
     pub(super) fn differ(&mut self, params: &SprungParams) -> bool {
         let Some((other, _)) = &self.other else { return false };
         let (loaded, name) = (params.loaded(), params.name());
@@ -30,7 +36,7 @@ impl Versions {
         if let Some((_, differ)) = self.compared.as_ref().filter(|(shown, _)| is_known(shown)) {
             return *differ;
         }
-        let differ = !same_sound(other, &params.state());
+        let differ = !same_sound(&undescribed(other.clone()), &undescribed(params.state()));
         self.compared = Some(((loaded, name, positions), differ));
         differ
     }
@@ -57,5 +63,30 @@ impl Versions {
         }
         self.have_swapped(now);
         history.end_swap(if self.is_b { "version B" } else { "version A" }, is_changed, params);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::params::Param;
+    use sprung::preset::{Playable, Preset};
+
+    #[test]
+    fn versions_do_not_differ_in_what_is_said_of_them() {
+        let (params, mut versions) = (SprungParams::default(), Versions::default());
+        versions.copy((params.state(), false));
+        assert!(!versions.differ(&params));
+        let described =
+            Preset { comment: "Another".to_owned(), author: "Me".to_owned(), ..Preset::clone(&Preset::factory()[0]) };
+        params.describe_as(&Playable::Preset(described));
+        let knob = &params.knobs()[Param::Decay as usize];
+        let before = knob.position();
+        knob.turn(0.9);
+        assert!(versions.differ(&params));
+        knob.turn(before);
+        assert!(!versions.differ(&params));
+        params.rename("Other".to_owned());
+        assert!(versions.differ(&params));
     }
 }
