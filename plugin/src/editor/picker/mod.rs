@@ -54,6 +54,9 @@ pub(super) struct Picker {
     is_typed: bool,
     /// Whether the field for what is most likely typed takes the focus.
     takes_focus: bool,
+    /// Whether nothing was shown yet, and what had the focus then.
+    is_new: bool,
+    before: Option<Id>,
     /// A path that is written over if the user saves again.
     confirm: Option<PathBuf>,
     complaint: String,
@@ -65,7 +68,7 @@ impl Picker {
         if let Pick::Place(sound) = &pick {
             self.name = format!("{}.toml", file_stem(sound.name()));
         }
-        (self.pick, self.takes_focus) = (Some(pick), true);
+        (self.pick, self.takes_focus, self.is_new) = (Some(pick), true, true);
         self.search = listing::find_places(library.map(Library::presets_folder)).ok();
         let last = self.listing.folder.clone();
         let first = || std::env::home_dir().unwrap_or_else(|| PathBuf::from("/"));
@@ -136,6 +139,12 @@ impl Picker {
         let palette = controls.palette;
         palette.paint_panel(ui.painter(), rect);
         let inner = rect.shrink(PADDING);
+        let focused = ui.memory(|memory| memory.focused());
+        if std::mem::take(&mut self.is_new) {
+            self.before = focused;
+        }
+        // A user who was quicker keeps the focus where it is.
+        self.takes_focus &= focused.is_none() || focused == self.before;
         let typed = self.follow(ui);
         let saves = matches!(self.pick, Some(Pick::Place(_)));
         if let Some(name) = typed.as_ref().and_then(|file| file.file_name()).filter(|_| saves) {
@@ -156,8 +165,7 @@ impl Picker {
         let edit = TextEdit::singleline(&mut self.path).id(Id::unique("path")).hint_text("a folder or file");
         let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
         name_field(&response, "Path of a folder or file", &self.path);
-        // When what is there is known, so that the first letter replaces it, and not if the user was quicker.
-        self.takes_focus &= !response.has_focus();
+        // When what is there is known, so that the first letter replaces it.
         if self.takes_focus && self.work.is_none() {
             self.takes_focus = false;
             let (field, text) = if saves { ("file name", &self.name) } else { ("path", &self.path) };
@@ -189,7 +197,6 @@ impl Picker {
             let edit = TextEdit::singleline(&mut self.name).id(Id::unique("file name")).hint_text("a name");
             let response = ui.put(rest, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
             name_field(&response, "Name of the file", &self.name);
-            self.takes_focus &= !response.has_focus();
             let text = if self.confirm.is_some() { "Replace" } else { "Save" };
             // What is shown is where it is saved.
             let is_there = self.work.is_none() && self.path == self.listing.folder.display().to_string();
