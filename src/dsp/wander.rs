@@ -11,7 +11,7 @@ const STAGGER: f64 = 0.618_033_988_749_894_9;
 
 /// Where two curves of each mode stand, −1 to 1, `phase` random numbers after their start. The first number of a row is for the mode
 /// `first`, rows are equally long. Each mode's numbers come at times of its own. Plain double precision in a frozen order. Real-time
-/// safe: 2 to 4 ns a mode.
+/// safe.
 pub(crate) fn wander(key: u64, phase: f64, first: usize, curves: [&mut [f64]; 2]) {
     let whole = floor(phase);
     let draws = [0, 1, 2].map(|n| stream(key, whole as u64 + n));

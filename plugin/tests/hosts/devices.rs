@@ -1,4 +1,4 @@
-//! The program's tab *Devices*: another device is chosen while it plays, and one that cannot be opened changes nothing.
+//! The program's page *Devices*: another device is chosen while it plays, and one that cannot be opened changes nothing.
 
 use crate::standalone::Stand;
 use std::path::Path;

@@ -2,8 +2,9 @@
 //!
 //! The sweep of the pitch is found and removed; of a held sound, all drift that its tones have in common. The sound,
 //! whose pitch is now constant, is analysed into modes. Their residual becomes a bed: modes that noise excites. If
-//! modes explain a sound badly, rows of bursts are counted, noise that lasts as long as the sound is shaped, and regular movement becomes that of low-frequency
-//! oscillators. Then each draft is played and compared with the recording, band by band ([`super::log_mel`]), to
+//! modes explain a sound badly, rows of bursts are counted, noise that lasts as long as the sound is shaped, and regular
+//! movement becomes that of low-frequency oscillators. Then each draft is played and compared with the recording, band by
+//! band ([`super::log_mel`]), to
 //! correct the mallet's hardness, the rise, fall and length of swells and of noise, levels and decays. The nearest
 //! draft is the result.
 //!
