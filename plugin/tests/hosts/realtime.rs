@@ -15,7 +15,6 @@ use clack_host::prelude::*;
 use sprung::internals::random::{key, uniform};
 use std::ffi::CStr;
 use std::process::{Command, ExitCode};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
@@ -46,22 +45,19 @@ pub(crate) fn the_watch_bites() {
     }
 }
 
-/// This program with the probe preloaded, for a piece of work.
+/// This program with the probe preloaded, for a piece of work, which has its own folder: tests run at the same time.
 fn watched(work: &str) -> Command {
-    static BUILD: Mutex<bool> = Mutex::new(false);
-    let probe = scratch("probe.so");
-    let mut built = BUILD.lock().unwrap();
-    if !*built {
-        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hosts/probe.c");
-        let mut cc = Command::new("cc");
-        cc.args(["-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-O1", "-o"]).arg(&probe).arg(source);
-        succeeds(cc);
-        *built = true;
-    }
+    let folder = scratch(work);
+    std::fs::create_dir_all(&folder).unwrap();
+    let probe = folder.join("probe.so");
+    let mut cc = Command::new("cc");
+    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hosts/probe.c");
+    cc.args(["-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-O1", "-o"]).arg(&probe).arg(source);
+    succeeds(cc);
     let mut command = command(work);
     command.env("LD_PRELOAD", probe);
     // One of the controllers that are played.
-    bind(&mut command, &scratch("watched"), "tilt = 7\n");
+    bind(&mut command, &folder, "tilt = 7\n");
     command
 }
 
