@@ -13,13 +13,13 @@ pcm.broken { type hw
  hint { show on
  description \"Broken\" } }
 ";
-/// Positions of the tab *Sound*, of *Devices*, and of the field *Output*.
-const SOUND: [i16; 2] = [158, 23];
-const TAB: [i16; 2] = [911, 309];
-const FIELD: [i16; 2] = [280, 377];
+/// Positions of the menu, of its *Devices*, and of the field *Output*.
+const MENU: [i16; 2] = [900, 23];
+const DEVICES: [i16; 2] = [905, 303];
+const FIELD: [i16; 2] = [280, 74];
 /// Possible positions of the lines of the field's list: the column, and the rows from the first line to the last.
 const LIST: i16 = 150;
-const LINES: std::ops::Range<i16> = 415..570;
+const LINES: std::ops::Range<i16> = 95..250;
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The devices on which the program has said that it plays, and whether one was refused.
@@ -39,14 +39,14 @@ pub(crate) fn another_device_is_chosen_while_it_plays() {
         stand.onlooker.drag_slowly(place, place);
         std::thread::sleep(Duration::from_millis(250));
     };
+    click(MENU);
+    click(DEVICES);
     let start = Instant::now();
     let mut lines = LINES.step_by(10).cycle();
     let is_alsa = |name: &String| name.contains("ALSA");
     while !matches!(heard(&stderr), (playing, true) if playing.iter().any(is_alsa)) {
         let text = std::fs::read_to_string(&stderr).unwrap();
         assert!(start.elapsed() < PATIENCE, "no other device, or none that is refused: {text}");
-        click(SOUND);
-        click(TAB);
         click(FIELD);
         click([LIST, lines.next().unwrap()]);
     }
