@@ -1,4 +1,4 @@
-"""Does in dawdreamer what a line of standard input says, a JSON list: a command and its arguments. Writes JSON."""
+"""Does in dawdreamer what standard input says, a JSON list of commands, each a list with its arguments. Writes their results, as JSON."""
 
 import json
 import sys
@@ -72,9 +72,8 @@ def state(plugin, preset, first, second):
 
 
 def main():
-    arguments = json.loads(sys.stdin.read())
-    command = {"render": render, "automate": automate, "parameters": parameters, "state": state}[arguments[0]]
-    print(json.dumps(command(*arguments[1:])))
+    commands = {"render": render, "automate": automate, "parameters": parameters, "state": state}
+    print(json.dumps([commands[name](*arguments) for name, *arguments in json.load(sys.stdin)]))
 
 
 main()

@@ -1,4 +1,4 @@
-"""Does in pedalboard what a line of standard input says, a JSON list: a command and its arguments. Writes JSON."""
+"""Does in pedalboard what standard input says, a JSON list of commands, each a list with its arguments. Writes their results, as JSON."""
 
 import json
 import re
@@ -67,8 +67,8 @@ def state(plugin, preset):
 
 
 def main():
-    arguments = json.loads(sys.stdin.read())
-    print(json.dumps({"render": render, "effect": effect, "parameters": parameters, "state": state}[arguments[0]](*arguments[1:])))
+    commands = {"render": render, "effect": effect, "parameters": parameters, "state": state}
+    print(json.dumps([commands[name](*arguments) for name, *arguments in json.load(sys.stdin)]))
 
 
 main()

@@ -55,9 +55,9 @@ fn script(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/hosts").join(name)
 }
 
-/// Makes a host do something and returns its answer.
+/// Makes a host do things and returns its answers. All in one process, because hosts take a second to start.
 #[track_caller]
-fn ask(host: &str, question: &Value) -> Value {
+fn ask(host: &str, questions: &[Value]) -> Vec<Value> {
     let mut child = Command::new(python())
         .arg(script(&format!("{host}_host.py")))
         // Without this the hosts would use the first display, which may belong to another test.
@@ -67,7 +67,7 @@ fn ask(host: &str, question: &Value) -> Value {
         .stderr(Stdio::piped())
         .spawn()
         .expect("Python starts");
-    child.stdin.take().expect("stdin is piped").write_all(question.to_string().as_bytes()).unwrap();
+    child.stdin.take().expect("stdin is piped").write_all(Value::from(questions).to_string().as_bytes()).unwrap();
     let output = child.wait_with_output().unwrap();
     let [stdout, stderr] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     assert!(output.status.success(), "{host}: {}\n{stdout}\n{stderr}", output.status);
@@ -113,7 +113,7 @@ fn value_at(info: &ParamInfo, position: f64) -> f32 {
 pub(crate) fn every_parameter_can_be_set_and_read() {
     let positions = [0.0, 1.0, 0.5, 0.25, 0.1, 0.333_333, 0.9, 0.01, 0.618];
     for host in ["dawdreamer", "pedalboard"] {
-        let answer = ask(host, &json!(["parameters", bundle::vst3(), positions]));
+        let answer = &ask(host, &[json!(["parameters", bundle::vst3(), positions])])[0];
         let rows = answer[0].as_array().unwrap();
         for info in PARAMS {
             let row: Vec<&Value> = rows.iter().filter(|row| row[0] == info.name).collect();
@@ -148,43 +148,62 @@ pub(crate) fn every_parameter_can_be_set_and_read() {
 /// which both hosts are made, gives each parameter one value per block, at its first frame. Notes and their pressure
 /// have their own frames.
 pub(crate) fn one_channel_has_the_bits_of_the_command() {
-    for ((name, patch), block) in patches().into_iter().zip([1, 64, 480].into_iter().cycle()) {
-        assert_bits_of_the_command(name, &phrase::messages(), &state(&patch), &Kit::of_patch(&patch), block);
-    }
+    let cases = patches().into_iter().zip([1, 64, 480].into_iter().cycle());
+    let cases: Vec<Case> = cases
+        .map(|((name, patch), block)| Case { name, state: state(&patch), kit: Kit::of_patch(&patch), block })
+        .collect();
+    assert_bits_of_the_command(&phrase::messages(), &cases);
 }
 
 /// The same for a kit in a project.
 pub(crate) fn a_kit_has_the_bits_of_the_command() {
     let drums = drums();
-    assert_bits_of_the_command("drums", &phrase::kit_messages(), &state_of_kit(&drums), &drums.kit(), 64);
+    let case = Case { name: "drums", state: state_of_kit(&drums), kit: drums.kit(), block: 64 };
+    assert_bits_of_the_command(&phrase::kit_messages(), &[case]);
 }
 
-/// Plays messages with a state in both hosts; in dawdreamer in blocks of this length.
-fn assert_bits_of_the_command(name: &str, messages: &[(u64, [u8; 3])], state: &[u8], kit: &Arc<Kit>, block: u64) {
+/// A state, the kit that it contains, and the length of the blocks in which dawdreamer plays it.
+struct Case {
+    name: &'static str,
+    state: Vec<u8>,
+    kit: Arc<Kit>,
+    block: u64,
+}
+
+/// Plays messages with these states in both hosts.
+fn assert_bits_of_the_command(messages: &[(u64, [u8; 3])], cases: &[Case]) {
+    const BLOCK: u64 = 480;
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("phrase.mid");
-    std::fs::write(&path, phrase::file(messages)).unwrap();
-    let preset = preset_file(folder.path(), name, state);
-    let expected =
-        |block| rendered_by_the_command(&phrase::file(&phrase::with_controllers_by_block(messages, block)), kit);
-    let audio = folder.path().join("dawdreamer.f32");
-    ask("dawdreamer", &json!(["render", bundle::vst3(), preset, path, SAMPLE_RATE, block, FRAMES, audio]));
-    assert_same_bits(&format!("dawdreamer, {name}, blocks of {block}"), &samples(&audio), &expected(block));
-    let block = 480;
-    let audio = folder.path().join("pedalboard.f32");
-    ask("pedalboard", &json!(["render", bundle::vst3(), preset, messages, SAMPLE_RATE, block, FRAMES, audio]));
-    assert_same_bits(&format!("pedalboard, {name}"), &samples(&audio), &expected(block));
+    let midi = folder.path().join("phrase.mid");
+    std::fs::write(&midi, phrase::file(messages)).unwrap();
+    let audio = |host: &str, case: &Case| folder.path().join(format!("{} in {host}", case.name));
+    let (mut of_dawdreamer, mut of_pedalboard) = (vec![], vec![]);
+    for case in cases {
+        let preset = preset_file(folder.path(), case.name, &case.state);
+        let [first, second] = ["dawdreamer", "pedalboard"].map(|host| audio(host, case));
+        of_dawdreamer.push(json!(["render", bundle::vst3(), preset, midi, SAMPLE_RATE, case.block, FRAMES, first]));
+        of_pedalboard.push(json!(["render", bundle::vst3(), preset, messages, SAMPLE_RATE, BLOCK, FRAMES, second]));
+    }
+    for (host, questions) in [("dawdreamer", of_dawdreamer), ("pedalboard", of_pedalboard)] {
+        ask(host, &questions);
+        for case in cases {
+            let block = if host == "dawdreamer" { case.block } else { BLOCK };
+            let file = phrase::file(&phrase::with_controllers_by_block(messages, block));
+            let what = format!("{host}, {}, blocks of {block}", case.name);
+            assert_same_bits(&what, &samples(&audio(host, case)), &rendered_by_the_command(&file, &case.kit));
+        }
+    }
 }
 
 /// What plays on the main output has the bits of Sprung in Sprung Multi too, although this host has no buffers for the others.
 pub(crate) fn many_outputs_leave_the_main_one_as_it_is() {
     let folder = tempfile::tempdir().unwrap();
-    let [plain, multi] = ["Sprung", "Sprung Multi"].map(|name| {
-        let audio = folder.path().join(name);
-        let messages = phrase::messages();
-        ask("pedalboard", &json!(["render", bundle::vst3(), null, messages, SAMPLE_RATE, 480, FRAMES, audio, name]));
-        samples(&audio)
-    });
+    let names = ["Sprung", "Sprung Multi"];
+    let messages = phrase::messages();
+    let audio = |name: &str| folder.path().join(name);
+    let render = |name| json!(["render", bundle::vst3(), null, messages, SAMPLE_RATE, 480, FRAMES, audio(name), name]);
+    ask("pedalboard", &names.map(render));
+    let [plain, multi] = names.map(|name| samples(&audio(name)));
     assert_sound("Sprung", &plain);
     assert_same_bits("Sprung Multi", &multi, &plain);
 }
@@ -204,7 +223,10 @@ pub(crate) fn the_effect_has_the_bits_of_the_command() {
     let settings = json!({
         "Chord": position("Chord", 3.0), "Chord root": position("Chord root", 48.0), "Resonator mix": position("Resonator mix", 1.0)
     });
-    ask("pedalboard", &json!(["effect", bundle::vst3(), "Sprung Resonator", settings, file, SAMPLE_RATE, 480, audio]));
+    ask(
+        "pedalboard",
+        &[json!(["effect", bundle::vst3(), "Sprung Resonator", settings, file, SAMPLE_RATE, 480, audio])],
+    );
     let song = Song::chord(&[48.0, 55.0, 60.0], 100.0 / 127.0, 0.5);
     let patch = without_exciters(&Patch::default()).with(Param::InputLevel, 0.0);
     let expected = by_the_command(&song, &patch, &incoming);
@@ -217,18 +239,23 @@ pub(crate) fn the_effect_has_the_bits_of_the_command() {
 
 pub(crate) fn what_is_saved_comes_back() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, patch) in patches() {
-        let preset = preset_file(folder.path(), name, &state(&patch));
-        let [first, second] = ["first", "second"].map(|name| folder.path().join(format!("{name}.state")));
-        let values = ask("dawdreamer", &json!(["state", bundle::vst3(), preset, first, second]));
+    let patches = patches();
+    let file = |name: &str, what: &str| folder.path().join(format!("{name}.{what}"));
+    let (mut of_dawdreamer, mut of_pedalboard) = (vec![], vec![]);
+    for (name, patch) in &patches {
+        let preset = preset_file(folder.path(), name, &state(patch));
+        of_dawdreamer.push(json!(["state", bundle::vst3(), preset, file(name, "first"), file(name, "second")]));
+        of_pedalboard.push(json!(["state", bundle::vst3(), preset]));
+    }
+    let answers = ask("dawdreamer", &of_dawdreamer).into_iter().zip(ask("pedalboard", &of_pedalboard));
+    for ((name, patch), (values, answer)) in patches.iter().zip(answers) {
         for info in PARAMS {
             let position = values[info.param as usize].as_f64().unwrap();
             let expected = info.normalise(patch.get(info.param));
             assert!((position - expected).abs() < 1e-6, "{name}: {} is at {position}", info.id);
         }
-        let same = std::fs::read(&first).unwrap() == std::fs::read(&second).unwrap();
+        let same = std::fs::read(file(name, "first")).unwrap() == std::fs::read(file(name, "second")).unwrap();
         assert!(same, "{name}: the state is not the same again");
-        let answer = ask("pedalboard", &json!(["state", bundle::vst3(), preset]));
         assert_eq!((&answer[0], &answer[1]), (&values_of_table(&values), &json!(true)), "{name}, in pedalboard");
     }
 }
@@ -244,16 +271,17 @@ pub(crate) fn automation_has_the_bits_of_the_engine() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("strike.mid");
     std::fs::write(&path, phrase::file(&[(3, [0x90, 57, 100])])).unwrap();
-    for param in [Param::Gain, Param::Tune, Param::Decay] {
+    let positions: Vec<f32> = (0..FRAMES).map(|frame| 0.2 + 0.6 * (frame / 5_120) as f32 / 15.0).collect();
+    let values = folder.path().join("automation.f32");
+    std::fs::write(&values, positions.iter().flat_map(|position| position.to_le_bytes()).collect::<Vec<u8>>()).unwrap();
+    let params = [Param::Gain, Param::Tune, Param::Decay];
+    let audio = |param: Param| folder.path().join(param.info().id);
+    let automate = |param: Param| {
+        json!(["automate", bundle::vst3(), "", param as usize, values, path, SAMPLE_RATE, FRAMES, audio(param)])
+    };
+    ask("dawdreamer", &params.map(automate));
+    for param in params {
         let info = param.info();
-        let positions: Vec<f32> = (0..FRAMES).map(|frame| 0.2 + 0.6 * (frame / 5_120) as f32 / 15.0).collect();
-        let values = folder.path().join("automation.f32");
-        std::fs::write(&values, positions.iter().flat_map(|position| position.to_le_bytes()).collect::<Vec<u8>>())
-            .unwrap();
-        let audio = folder.path().join("automated.f32");
-        let question =
-            json!(["automate", bundle::vst3(), "", param as usize, values, path, SAMPLE_RATE, FRAMES, audio]);
-        ask("dawdreamer", &question);
         let mut song = vec![At(3, 0, EventKind::NoteOn { key: 57, detune: 0.0, velocity: 100.0 / 127.0, id: None })];
         // A value that is set while nothing sounds takes effect at once.
         let first = info.denormalise(positions[0].into());
@@ -271,7 +299,7 @@ pub(crate) fn automation_has_the_bits_of_the_engine() {
             &song,
             FRAMES,
         );
-        assert_same_bits(&format!("automated {}", info.id), &samples(&audio), &expected);
+        assert_same_bits(&format!("automated {}", info.id), &samples(&audio(param)), &expected);
     }
 }
 
