@@ -32,6 +32,13 @@ pub(super) enum Judged {
     ByModes,
 }
 
+impl Judged {
+    /// Windows of a draft that are judged.
+    fn windows(self) -> usize {
+        if self == Self::ByAttack { ATTACK } else { usize::MAX }
+    }
+}
+
 /// Plays drafts and measures how far they are from a recording. Reports the progress each time.
 pub(super) struct Listener<'a> {
     audition: Audition,
@@ -92,11 +99,10 @@ impl<'a> Listener<'a> {
     /// The distance of a draft that is judged so, and corrected before.
     fn judge(&mut self, draft: &mut Draft, by: Judged) -> Result<f64> {
         match by {
-            Judged::ByAttack => self.distance(draft, ATTACK),
-            Judged::AsItIs => self.distance(draft, usize::MAX),
+            Judged::ByAttack | Judged::AsItIs => self.distance(draft, by.windows()),
             Judged::ByLevels => self.correct_levels(draft),
             Judged::ByModes if draft.noise.is_audible() => self.correct(draft, FEW_ROUNDS),
-            Judged::ByModes => self.distance(draft, usize::MAX),
+            Judged::ByModes => self.distance(draft, by.windows()),
         }
     }
 
@@ -107,15 +113,8 @@ impl<'a> Listener<'a> {
         by: Judged,
         others: impl IntoIterator<Item = Draft>,
     ) -> Result<()> {
-        let windows = if by == Judged::ByAttack { ATTACK } else { usize::MAX };
-        let mut least = self.distance(draft, windows)?;
-        for mut other in others {
-            let distance = self.judge(&mut other, by)?;
-            if distance < least {
-                (*draft, least) = (other, distance);
-            }
-        }
-        Ok(())
+        let least = self.distance(draft, by.windows())?;
+        self.nearest(draft, least, by, others).map(drop)
     }
 
     /// Changes a draft by steps of [`STEPS`] as long as it comes nearer: `near` gives the drafts that are a step from one.
@@ -125,7 +124,25 @@ impl<'a> Listener<'a> {
         by: Judged,
         near: impl Fn(&Draft, f64) -> Vec<Draft>,
     ) -> Result<()> {
-        STEPS.into_iter().try_for_each(|step| self.keep(draft, by, near(draft, step)))
+        let least = self.distance(draft, by.windows())?;
+        STEPS.into_iter().try_fold(least, |least, step| self.nearest(draft, least, by, near(draft, step))).map(drop)
+    }
+
+    /// Replaces a draft at a distance by the nearest of `others`, if that is nearer. Returns the distance.
+    fn nearest(
+        &mut self,
+        draft: &mut Draft,
+        mut least: f64,
+        by: Judged,
+        others: impl IntoIterator<Item = Draft>,
+    ) -> Result<f64> {
+        for mut other in others {
+            let distance = self.judge(&mut other, by)?;
+            if distance < least {
+                (*draft, least) = (other, distance);
+            }
+        }
+        Ok(least)
     }
 
     /// Corrects the levels alone of the modes of a draft, and returns its distance.
