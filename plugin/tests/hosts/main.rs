@@ -266,7 +266,7 @@ fn main() -> ExitCode {
             the_users_sounds_are_listed_and_load
         }
         Nothing: growth {
-            a_thousand_instances_leave_nothing_behind
+            hundreds_of_instances_leave_nothing_behind
             the_library_can_be_opened_and_closed_again
         }
         Nothing: realtime {
