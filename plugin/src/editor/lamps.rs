@@ -37,7 +37,12 @@ pub(crate) const MOVERS: [Lamp; 6] = [
         -18.0,
         "Breath through a reed, lips or a flute’s jet, for as long as a key is held.",
     ),
-    lamp("Input", Param::InputLevel, 0.0, "Incoming sound drives it, for as long as a key is held."),
+    lamp(
+        "Input",
+        Param::InputLevel,
+        0.0,
+        "Incoming sound drives it while a key is held. Nothing sounds unless the host sends it sound.",
+    ),
 ];
 
 /// What touches the body, and what its sound passes through.

@@ -5,7 +5,7 @@ use crate::form::Form;
 use crate::origin::{Origin, model_name};
 use sprung::patch::ModeTable;
 use sprung::preset::Family;
-use sprung::sound::bodies::{Body, Model, Point};
+use sprung::sound::bodies::{Body, MATERIALS, Model, Point};
 use sprung::units::semitones_from_ratio;
 
 /// The most modes that are drawn on a line, and on a surface: the grid of points is too coarse for finer shapes.
@@ -28,8 +28,8 @@ pub struct BodyShape {
     pub caption: String,
 }
 
-/// The model that a table of modes is drawn as, and the name that it has in presets.
-pub fn suggested_model(family: Option<Family>) -> (&'static str, Model) {
+/// The body that a table of modes is drawn as: of a model that suits its family, and of the material that its tags name.
+pub fn suggested_body(family: Option<Family>, tags: &[String]) -> Body {
     let id = match family {
         Some(Family::Kick | Family::Snare | Family::Tom | Family::HandDrum) => "membrane",
         Some(Family::Hat | Family::Cymbal) => "free_disc",
@@ -40,21 +40,31 @@ pub fn suggested_model(family: Option<Family>) -> (&'static str, Model) {
         Some(Family::Effect) => "free_plate",
         _ => "string",
     };
-    (id, Model::find(id).cloned().unwrap_or(Model::String))
+    let mut body = Body::new(Model::find(id).cloned().unwrap_or(Model::String));
+    let named = [("metal", "steel"), ("glass", "glass"), ("wood", "rosewood")]
+        .into_iter()
+        .find(|(tag, _)| tags.iter().any(|own| own == tag));
+    // Skins and strings are of their own, whatever holds them.
+    if let Some(material) = named.and_then(|(_, id)| MATERIALS.iter().find(|material| material.id == id))
+        && !["membrane", "string"].contains(&id)
+    {
+        body.material = *material;
+    }
+    body
 }
 
 /// The figure of a sound's body in a picture of the size of a letter or two: of its model's, or of one that suits its family.
-pub fn small_figure(modes: &ModeTable, family: Option<Family>) -> Figure {
+pub fn small_figure(modes: &ModeTable, family: Option<Family>, tags: &[String]) -> Figure {
     match Origin::of(modes).with_places().body() {
         Some(body) => Figure::small(body),
-        None => Figure::small(&Body::new(suggested_model(family).1)),
+        None => Figure::small(&suggested_body(family, tags)),
     }
     .drummed(family)
 }
 
 impl BodyShape {
     /// The body of a sound of this family. This is slow: it computes the shapes of all modes.
-    pub fn of(modes: &ModeTable, family: Option<Family>) -> Self {
+    pub fn of(modes: &ModeTable, family: Option<Family>, tags: &[String]) -> Self {
         let origin = Origin::of(modes);
         let is_mass = origin.body().is_some_and(|body| body.model == Model::Mass);
         let origin = origin.with_places();
@@ -65,12 +75,10 @@ impl BodyShape {
                 (pair.first.clone(), NEAR[0], caption)
             }
             Origin::Table => {
-                let (id, model) = suggested_model(family);
-                (
-                    Body::new(model),
-                    NEAR[1],
-                    format!("{}, drawn as a {}", if is_mass { "a mass" } else { "a table of modes" }, model_name(id)),
-                )
+                let body = suggested_body(family, tags);
+                let what = if is_mass { "a mass" } else { "a table of modes" };
+                let caption = format!("{what}, drawn as a {}", model_name(body.model.id()));
+                (body, NEAR[1], caption)
             }
         };
         let figure = Figure::of(&body);
@@ -139,7 +147,7 @@ mod tests {
     #[test]
     fn a_string_moves_as_its_modes_do_and_its_ends_stay() {
         let body = Body::new(Model::String);
-        let shape = BodyShape::of(&modes_of_body(&body), None);
+        let shape = BodyShape::of(&modes_of_body(&body), None, &[]);
         let count = shape.figure.points.len();
         for mode in 0..6 {
             let amplitudes: Vec<f32> = (0..6).map(|other| if other == mode { 1.0 } else { 0.0 }).collect();
@@ -155,7 +163,7 @@ mod tests {
     fn drums_are_told_apart_by_their_shells() {
         let drum = |name: &str| {
             let preset = Preset::find(name).unwrap();
-            small_figure(&preset.patch.modes, preset.guide.family).drum
+            small_figure(&preset.patch.modes, preset.guide.family, &preset.tags).drum
         };
         let [kick, snare, tom] = ["Kick", "Snare", "Low Tom"].map(|name| drum(name).unwrap());
         assert!(kick.depth > tom.depth && tom.depth > snare.depth && snare.has_wires && kick.size > tom.size);
@@ -163,9 +171,21 @@ mod tests {
     }
 
     #[test]
+    fn what_is_only_guessed_is_of_the_material_that_its_tags_name() {
+        let material = |family, tags: &[&str]| {
+            let tags: Vec<String> = tags.iter().map(|tag| (*tag).to_owned()).collect();
+            suggested_body(Some(family), &tags).material.id
+        };
+        assert_eq!(material(Family::Mallet, &["mallet"]), "rosewood");
+        assert_eq!(material(Family::Mallet, &["mallet", "metal"]), "steel");
+        assert_eq!(material(Family::Mallet, &["glass"]), "glass");
+        assert_eq!(material(Family::Snare, &["metal"]), suggested_body(Some(Family::Snare), &[]).material.id);
+    }
+
+    #[test]
     fn every_factory_sound_has_a_body_that_moves() {
         for preset in Preset::factory() {
-            let shape = BodyShape::of(&preset.patch.modes, preset.guide.family);
+            let shape = BodyShape::of(&preset.patch.modes, preset.guide.family, &preset.tags);
             let loudest =
                 preset.patch.modes.as_slice().iter().take(64).map(|mode| mode.level.abs()).collect::<Vec<_>>();
             let moved = shape.displacements(&loudest);
@@ -173,7 +193,7 @@ mod tests {
             assert!(moved.iter().any(|value| value.abs() > 1e-4), "{}: {}", preset.name, shape.caption);
         }
         let bell = Preset::find("Church Bell").unwrap();
-        let shape = BodyShape::of(&bell.patch.modes, None);
+        let shape = BodyShape::of(&bell.patch.modes, None, &[]);
         assert_eq!((shape.figure.form, shape.caption.as_str()), (Form::Bell, "church bell, joined to a second body"));
     }
 }

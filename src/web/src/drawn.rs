@@ -21,7 +21,7 @@ pub(crate) struct Drawn {
 impl Drawn {
     /// The body of a preset at rest. Slow: it computes the shapes of all modes.
     pub(crate) fn new(preset: &Preset) -> Self {
-        let shape = BodyShape::of(&preset.patch.modes, preset.guide.family);
+        let shape = BodyShape::of(&preset.patch.modes, preset.guide.family, &preset.tags);
         Self { shape, swing: Swing::default(), energies: [0.0; SHOWN], numbers: Vec::new() }
     }
 

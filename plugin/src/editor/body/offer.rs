@@ -7,8 +7,7 @@ use crate::editor::theme::{GAP, SMALL};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::paragraph;
 use egui::{Rect, Shape, Ui};
-use sprung::preset::Family;
-use sprung_picture::{Origin, model_name, suggested_model};
+use sprung_picture::{Origin, model_name, suggested_body};
 
 /// What comes of a body for a table of modes.
 pub(crate) const TAKES: &str = "A body of it takes the place of the table of modes.";
@@ -20,21 +19,25 @@ pub(crate) fn offer(
     ui: &Ui,
     rect: Rect,
     text: &str,
-    (origin, family): (&Origin, Option<Family>),
+    (origin, shown): (&Origin, &Shown),
     controls: &mut Controls,
 ) -> Option<(Origin, String)> {
-    let (deed, suggested) = suggestion(origin, family);
-    let name = model_name(suggested_model(family).0);
+    let (deed, suggested) = suggestion(origin, shown);
+    let name = suggested.body().map_or(String::new(), |body| model_name(body.model.id()));
     say(ui, rect, text, [&deed, TAKES], controls).then(|| (suggested, format!("model {name}")))
 }
 
 /// What is done to make a table of modes the body as which it is drawn, and that body; another origin stays as it is.
-pub(crate) fn suggestion(origin: &Origin, family: Option<Family>) -> (String, Origin) {
-    let (id, model) = suggested_model(family);
-    let name = model_name(id);
+pub(crate) fn suggestion(origin: &Origin, shown: &Shown) -> (String, Origin) {
+    let suggested = suggested_body(shown.family(), shown.tags());
+    let name = model_name(suggested.model.id());
     let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-    let body = if *origin == Origin::Table { origin.with_model(false, Some(&model)) } else { origin.clone() };
-    (format!("Make it {article} {name}"), body)
+    let is_table = *origin == Origin::Table;
+    let mut made = if is_table { origin.with_model(false, Some(&suggested.model)) } else { origin.clone() };
+    if let Some(body) = made.body_mut().filter(|_| is_table) {
+        body.material = suggested.material;
+    }
+    (format!("Make it {article} {name}"), made)
 }
 
 /// Says that a kit's sounds have bodies of their own, and offers to edit the pad that is shown.

@@ -82,7 +82,7 @@ impl BodyPage {
         let rest = inner.with_min_x(side.right() + GAP);
         let mut picked = self.side(ui, side, &origin, controls);
         if origin == Origin::Table {
-            picked = offer(ui, rest, LACKS, (&origin, shown.family()), controls).or(picked);
+            picked = offer(ui, rest, LACKS, (&origin, shown), controls).or(picked);
         }
         if let Some((changed, what)) = picked {
             self.leave(controls);
@@ -108,13 +108,17 @@ impl BodyPage {
 
     /// Shows which body is edited, its model and its material. Returns the changed body and the name of the undo step.
     fn side(&mut self, ui: &Ui, rect: Rect, origin: &Origin, controls: &mut Controls) -> Option<(Origin, String)> {
-        let row =
-            |place: usize| Rect::from_min_size(rect.min + vec2(0.0, place as f32 * ROW), vec2(rect.width(), ROW - 4.0));
+        // All four rows are within a small window too.
+        let tall = ROW.min((rect.height() + 4.0) / 4.0);
+        let row = |place: usize| {
+            Rect::from_min_size(rect.min + vec2(0.0, place as f32 * tall), vec2(rect.width(), tall - 4.0))
+        };
         let palette = controls.palette;
         let parts = [("First", Part::First), ("Second", Part::Second), ("Joint", Part::Joint)];
         for (place, (name, part)) in parts.into_iter().enumerate() {
             let width = (rect.width() - 8.0) / 3.0;
-            let at = Rect::from_min_size(row(0).min + vec2(place as f32 * (width + 4.0), 0.0), vec2(width, ROW - 4.0));
+            let at =
+                Rect::from_min_size(row(0).min + vec2(place as f32 * (width + 4.0), 0.0), vec2(width, row(0).height()));
             let is_there =
                 part == Part::First || origin.pair().is_some() || part == Part::Second && *origin != Origin::Table;
             let look = match (is_there, part == self.part) {

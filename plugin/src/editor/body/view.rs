@@ -66,7 +66,7 @@ impl BodyView {
         }
         let mut shape = match self.shape.take() {
             Some((subject, shape)) if subject == shown.subject() => shape,
-            _ => BodyShape::of(&shown.patch().modes, shown.family()),
+            _ => BodyShape::of(&shown.patch().modes, shown.family(), shown.tags()),
         };
         let mut subject = shown.subject();
         if strike(&shape, shown, controls).is_some() {

@@ -90,7 +90,7 @@ fn show_star(ui: &Ui, rect: Rect, place: usize, name: &str, is_on: bool, palette
         rect.center() + radius * Vec2::angled((number as f32 / 10.0 - 0.25) * TAU)
     };
     let colour =
-        if is_on { palette.accent } else { palette.muted.gamma_multiply(if response.hovered() { 1.0 } else { 0.45 }) };
+        if is_on { palette.accent } else { palette.muted.gamma_multiply(if response.hovered() { 1.0 } else { 0.7 }) };
     let points: Vec<_> = (0..10).map(corner).collect();
     if is_on {
         // A star is not convex, but its five points and its centre are.

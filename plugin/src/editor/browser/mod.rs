@@ -137,11 +137,17 @@ impl Browser {
         let mut found = sounds.find(self.category, &self.words, self.likeness.places());
         self.tags.retain(&mut found);
         self.tags.show(ui, tags, &found, palette);
-        let mut says = "";
+        let mut says = String::new();
         if found.is_empty() {
-            says = self.category.invitation();
+            says = self.category.invitation().to_owned();
             if says.is_empty() || !self.words.trim().is_empty() || !self.tags.are_empty() {
-                (found, says) = sounds.nearest(&self.words, |_| true);
+                found = sounds.find(Category::All, &self.words, &[]);
+                self.tags.retain(&mut found);
+                says = format!("None in {}. Elsewhere:", self.category.name());
+            }
+            if found.is_empty() && says.ends_with(':') {
+                let (near, none) = sounds.nearest(&self.words, |_| true);
+                (found, says) = (near, none.to_owned());
             }
         }
         let chosen = match command {
@@ -158,7 +164,7 @@ impl Browser {
                 None
             }
         };
-        let list = List { found: &found, present: &present, chosen, says };
+        let list = List { found: &found, present: &present, chosen, says: &says };
         let clicked = list.show(ui, rows, &sounds, palette);
         if let Some(sound) = clicked.star.and_then(|place| found.get(place)) {
             message = sounds.set_favourite(sound.name(), !sounds.is_favourite(sound)).map(Err).or(message);
@@ -174,6 +180,7 @@ impl Browser {
         if outcome.as_ref().is_some_and(|outcome| outcome.compares)
             && let Playable::Preset(preset) = controls.params.state().playable
         {
+            self.likeness.asked = (self.words.clone(), self.tags.clone());
             message = self.likeness.start(preset, &sounds).err().map(Err).or(message);
         }
         let message = compared.map(Err).or(message);
@@ -216,8 +223,8 @@ impl Browser {
         match ended {
             Ok(places) => {
                 self.likeness.found = Some((name, places));
-                if self.words.is_empty() && self.tags.are_empty() {
-                    self.category = Category::Like;
+                if self.likeness.asked == (self.words.clone(), self.tags.clone()) {
+                    self.choose(Category::Like);
                 }
                 None
             }
@@ -239,7 +246,8 @@ impl Browser {
             for (category, name) in compared.into_iter().chain(Category::all().map(|each| (each, each.name()))) {
                 let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW - 2.0), Sense::hover());
                 let look = if category == self.category { Look::On } else { Look::Off };
-                if button(ui, row, &name, &format!("Show {name}"), look, palette).clicked() && self.category != category
+                if button(ui, row.shrink2(vec2(0.0, 1.0)), &name, &format!("Show {name}"), look, palette).clicked()
+                    && self.category != category
                 {
                     self.choose(category);
                 }

@@ -97,7 +97,7 @@ impl Sounds {
         let favourites = favourites.unwrap_or_default();
         let figure = |sound: &Arc<Listed>| match &sound.playable {
             Playable::Preset(preset) => {
-                Some((Arc::as_ptr(sound).addr(), small_figure(&preset.patch.modes, preset.guide.family)))
+                Some((Arc::as_ptr(sound).addr(), small_figure(&preset.patch.modes, preset.guide.family, &preset.tags)))
             }
             Playable::Kit(_) => None,
         };

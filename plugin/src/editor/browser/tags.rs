@@ -14,7 +14,7 @@ const AROUND: f32 = 14.0;
 const SPACE: f32 = 4.0;
 
 /// The tags that are chosen.
-#[derive(Default)]
+#[derive(Clone, Default, PartialEq)]
 pub(super) struct Tags(Vec<String>);
 
 impl Tags {

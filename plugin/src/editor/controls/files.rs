@@ -6,14 +6,10 @@ use crate::state::State;
 use nice_plug_core::context::gui::GuiContext;
 use sprung::preset::Playable;
 
-/// Loads a preset or kit, and tells the host the new knob positions.
+/// Loads a preset or kit, and tells the host the new knob positions. While the sound of a kit's pad is edited, a preset takes its place,
+/// and is put back on the pad.
 pub(crate) fn load(playable: Playable, params: &SprungParams, host: &GuiContext) {
-    let State { seed, view, .. } = params.state();
-    gestures::load(State::new(playable, seed, view), params, host);
-}
-
-/// Like [`load`], for the present sound with changes: if it is that of a kit's pad, it stays so.
-pub(crate) fn load_changed(playable: Playable, params: &SprungParams, host: &GuiContext) {
     let State { seed, view, pad, .. } = params.state();
+    let pad = pad.filter(|_| matches!(playable, Playable::Preset(_)));
     gestures::load(State { pad, ..State::new(playable, seed, view) }, params, host);
 }

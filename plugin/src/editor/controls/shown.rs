@@ -94,6 +94,14 @@ impl Shown {
         self.kit().map_or(self.guide.family, of_kit)
     }
 
+    /// The tags of the sound whose modes are shown.
+    pub(crate) fn tags(&self) -> &[String] {
+        match &self.playable {
+            Playable::Preset(preset) => &preset.tags,
+            Playable::Kit(kit) => kit.sounds.get(self.sound).map_or(&[], |(_, preset)| &preset.tags),
+        }
+    }
+
     /// The keys that the sound is made for, or that have a pad: one bit each.
     pub(crate) fn keys(&self) -> u128 {
         let is_meant = |key: &u8| match self.kit() {

@@ -19,7 +19,7 @@ use crate::editor::widgets::text::line;
 use crate::link::Link;
 use crate::loaded::Loaded;
 use detail::Detail;
-use edit::{change, copy, name_of, put, set, swap, take};
+use edit::{FIRST, change, copy, name_of, put, set, swap, take};
 use egui::{Align2, Rect, Ui, pos2, vec2};
 use pads::{Carried, Deed, Pads};
 use sounds::SoundList;
@@ -60,7 +60,8 @@ impl Figures {
         let sounds = shown.kit().map_or(&[][..], |kit| &kit.sounds);
         let is_known = self.loaded.as_ref().is_some_and(|loaded| Arc::ptr_eq(loaded, shown.loaded()));
         if !is_known && self.sounds != sounds {
-            let of = |(_, preset): &(String, Preset)| small_figure(&preset.patch.modes, preset.guide.family);
+            let of =
+                |(_, preset): &(String, Preset)| small_figure(&preset.patch.modes, preset.guide.family, &preset.tags);
             (self.sounds, self.figures) = (sounds.to_vec(), sounds.iter().map(of).collect());
         }
         self.loaded = Some(shown.loaded().clone());
@@ -104,7 +105,8 @@ impl KitPage {
             self.leave(controls);
             self.name = name;
             let keys = || shown.kit().into_iter().flat_map(|kit| kit.pads.iter().map(|(key, _)| *key));
-            if let Some(first) = keys().next().filter(|_| keys().all(|key| key != self.pads.chosen())) {
+            let is_new = keys().eq([FIRST]) && self.pads.chosen() == FIRST + 2;
+            if let Some(first) = keys().next().filter(|_| !is_new && keys().all(|key| key != self.pads.chosen())) {
                 self.pads.choose(first);
             }
         }
@@ -224,12 +226,14 @@ impl KitPage {
             controls.history.begin(controls.params);
             load(Playable::Kit(edit::kit_of(preset)), controls.params, controls.host);
             controls.history.end("a kit of this sound", controls.params);
+            // A click on another sound puts that beside it, and not in its place.
+            self.pads.choose(FIRST + 2);
             return None;
         }
         let help = Rect::from_min_size(pos2(head.right() - 22.0, head.top()), vec2(22.0, HEAD - 4.0));
         let says = Rect::from_min_max(make.right_top() + vec2(10.0, 0.0), pos2(help.left(), make.bottom()));
         let text = match controls.params.pad() {
-            Some(pad) => format!("Of {}: Put back, above, returns the sound to it.", pad.name()),
+            Some(pad) => format!("You edit {}. Put back, above, ends that and shows the kit.", pad.name()),
             None => format!("All keys play {}: those that suit it are bright.", controls.params.name()),
         };
         line(ui.painter(), says, Align2::LEFT_CENTER, &text, TEXT, palette.muted);

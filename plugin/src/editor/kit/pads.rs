@@ -189,7 +189,7 @@ impl Face<'_> {
         let edge = match (self.is_aim || self.is_chosen, self.has_focus, self.is_mate) {
             (_, true, _) => Stroke::new(1.5, palette.text),
             (true, ..) => Stroke::new(1.5, palette.accent),
-            (.., true) => Stroke::new(1.5, palette.modulation),
+            (.., true) => Stroke::new(1.5, palette.text),
             _ => Stroke::new(1.0, if self.pad.is_some() { palette.outline } else { palette.line }),
         };
         painter.rect(rect, RADIUS, fill, edge, StrokeKind::Inside);
@@ -197,7 +197,7 @@ impl Face<'_> {
         let top = inside.with_max_y(inside.top() + 14.0);
         line(painter, top, Align2::LEFT_CENTER, &note_name(self.key), SMALL, muted);
         if self.group > 0 {
-            let colour = if self.is_down { palette.on_accent } else { palette.modulation };
+            let colour = if self.is_down { palette.on_accent } else { palette.text };
             line(painter, top, Align2::RIGHT_CENTER, &self.group.to_string(), SMALL, colour);
         }
         let Some(pad) = self.pad else {

@@ -65,7 +65,11 @@ impl Curve {
         let corners = match section[0].param {
             Param::Envelope1Delay | Param::Envelope2Delay => {
                 curves::paint_envelope(ui.painter(), rect, &|row| values[row], whole, controls.palette);
-                of_envelope(rect, section, &values, whole)
+                let corners = of_envelope(rect, section, &values, whole);
+                // What is held for no time stands beside the peak, and belongs to it.
+                let leader = [corners[1].place, corners[2].place];
+                ui.painter().line_segment(leader, Stroke::new(1.5, controls.palette.accent));
+                corners
             }
             Param::Lfo1Rate | Param::Lfo2Rate | Param::Lfo3Rate => {
                 curves::paint(ui.painter(), rect, section, controls);

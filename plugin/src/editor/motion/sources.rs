@@ -51,8 +51,12 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, contr
     let mut clicked = None;
     let mut inner = ui.new_child(UiBuilder::new().id_salt("sources").max_rect(rect));
     ScrollArea::vertical().id_salt("sources").auto_shrink(false).show(&mut inner, |ui| {
-        let names: Vec<(Source, String)> =
-            Source::ALL.iter().map(|source| (*source, source_name(*source, shown.guide()))).collect();
+        // Macros have a title of their own.
+        let name = |source: Source| {
+            let own = drawn(source).or_else(|| shown.guide().macro_name(source.id()));
+            own.map_or_else(|| source_name(source, shown.guide()), str::to_owned)
+        };
+        let names: Vec<(Source, String)> = Source::ALL.iter().map(|source| (*source, name(*source))).collect();
         let whole = ui.available_width() - SPACE;
         let is_macro = |source: Source| section_of(source) == Some("Macros");
         let played = names.iter().filter(|(source, _)| section_of(*source).is_none());

@@ -102,7 +102,7 @@ impl Pages {
                     left = rect.with_max_x(rect.left() + SECTIONS);
                     voices::show(ui.painter(), rect.with_min_x(left.right() + GAP), voices, controls);
                 }
-                let of = || small_figure(&shown.patch().modes, shown.family());
+                let of = || small_figure(&shown.patch().modes, shown.family(), shown.tags());
                 let figure = self.figure.take().filter(|(subject, _)| *subject == shown.subject());
                 let (_, figure) = self.figure.insert(figure.unwrap_or_else(|| (shown.subject(), of())));
                 let about = (shown.patch(), shown.guide(), is_preset, &*figure);

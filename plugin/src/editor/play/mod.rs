@@ -153,12 +153,15 @@ fn knobs(ui: &mut Ui, rect: Rect, title: f32, shown: &Shown, controls: &mut Cont
         if added.is_empty() { (added, vec![gain]) } else { ([added, vec![gain]].concat(), Vec::new()) };
     let groups = [("MACROS", macros), (ADDED, added), ("ESSENTIALS", essentials), ("OUTPUT", output)];
     let count: usize = groups.iter().map(|(_, knobs)| knobs.len()).sum();
-    let gaps = groups.iter().filter(|(_, knobs)| !knobs.is_empty()).count() as f32 * 2.0 * GAP;
+    let spaces = groups.iter().filter(|(_, knobs)| !knobs.is_empty()).count().saturating_sub(1) as f32;
     let inside = rect.shrink(PADDING);
-    let width = ((inside.width() - gaps) / count as f32).floor().clamp(CELL_WIDTH[0], CELL_WIDTH[1] + 12.0);
+    let room = inside.width() - spaces * 2.0 * GAP;
+    let width = (room / count as f32).floor().clamp(CELL_WIDTH[0], CELL_WIDTH[1] + 12.0);
+    // What is left over stands between the groups, so that the last ends at the right.
+    let gap = (2.0 * GAP + (room - count as f32 * width).max(0.0) / spaces.max(1.0)).floor();
     let mut inner = ui.new_child(UiBuilder::new().id_salt("play knobs").max_rect(inside));
     ScrollArea::horizontal().id_salt("play").auto_shrink(false).show(&mut inner, |ui| {
-        let size = vec2(count as f32 * width + gaps, inside.height());
+        let size = vec2(count as f32 * width + spaces * gap, inside.height());
         let (area, _) = ui.allocate_exact_size(size, Sense::hover());
         let mut corner = area.min;
         for (name, knobs) in groups.into_iter().filter(|(_, knobs)| !knobs.is_empty()) {
@@ -177,7 +180,7 @@ fn knobs(ui: &mut Ui, rect: Rect, title: f32, shown: &Shown, controls: &mut Cont
                 }
                 corner.x += width;
             }
-            corner.x += 2.0 * GAP;
+            corner.x += gap;
         }
     });
 }

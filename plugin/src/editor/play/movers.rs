@@ -1,6 +1,6 @@
 //! What moves the body, as tiles: a click lets one of them act alone, its lamp adds it to the others.
 
-use crate::editor::controls::files::load_changed;
+use crate::editor::controls::files::load;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::lamps::{Lamp, MOVERS};
 use crate::editor::theme::{GAP, Palette, RADIUS, SMALL, TEXT};
@@ -71,7 +71,7 @@ fn act_alone(mover: &Lamp, controls: &mut Controls) {
         preset.patch.set(param, value);
     }
     controls.history.begin(controls.params);
-    load_changed(state.playable, controls.params, controls.host);
+    load(state.playable, controls.params, controls.host);
     controls.history.end(format!("{} alone", mover.section), controls.params);
 }
 

@@ -1,6 +1,6 @@
 //! The floor that the body stands on, which is its space, and the place of the body.
 
-use crate::editor::controls::Controls;
+use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::SMALL;
 use crate::editor::widgets::buttons::tab;
 use crate::editor::widgets::text::{line, width};
@@ -20,7 +20,8 @@ pub(in crate::editor) fn paint_floor(painter: &Painter, stage: Rect, middle: Rec
     let palette = controls.palette;
     let far = stage.top() + HORIZON * stage.height();
     let edge = 0.36 * stage.width();
-    let [left, right] = [stage.center().x - edge, stage.center().x + edge];
+    // Not under the words at the sides.
+    let [left, right] = [(stage.center().x - edge).max(middle.left()), (stage.center().x + edge).min(middle.right())];
     let corner = |pos: Pos2, color: Color32| Vertex { pos, uv: WHITE_UV, color };
     let near = palette.raised.lerp_to_gamma(palette.panel, 0.2);
     let mut floor = Mesh::default();
@@ -91,7 +92,12 @@ pub(super) fn show_spaces(ui: &Ui, rect: Rect, controls: &mut Controls) -> f32 {
         let size = vec2(width(ui.painter(), name, SMALL + 1.0) + 14.0, rect.height());
         let place = Rect::from_min_size(pos2(left, rect.top()), size);
         left = place.right() + 2.0;
-        if tab(ui, place, name, space == now, palette).clicked() {
+        let response = tab(ui, place, name, space == now, palette);
+        if response.hovered() {
+            let help = if space == 0 { "No reverb." } else { "A reverb made of masses, in which the sound rings on." };
+            *controls.hint = Hint::new(format!("Space: {name}"), help);
+        }
+        if response.clicked() {
             controls.set(Param::Space.info(), space as f32);
         }
     }

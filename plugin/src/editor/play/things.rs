@@ -11,7 +11,6 @@ use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::line;
 use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
-use sprung::preset::Family;
 use sprung::sound::bodies::{Body, MATERIALS, Model};
 use sprung_picture::{Figure, Origin, model_name, tint};
 
@@ -59,17 +58,16 @@ impl Things {
             let model = |id| Model::find(id).cloned().unwrap_or(Model::String);
             self.figures = TILES.iter().map(|(id, _)| Figure::small(&Body::new(model(id)))).collect();
         }
-        let family = shown.family();
         let (changed, what) = if is_tall {
-            self.tiles(ui, rect, &origin, family, controls)?
+            self.tiles(ui, rect, &origin, shown, controls)?
         } else {
             let model = model_field(ui, rect.with_max_y(rect.top() + 22.0), &origin, controls);
             let below = rect.with_min_y(rect.top() + 28.0).with_max_y(rect.top() + 50.0);
             let now = origin.body().map(|body| body.material.id);
-            let other = material_field(ui, below, now, &suggestion(&origin, family).1, controls);
+            let other = material_field(ui, below, now, &suggestion(&origin, shown).1, controls);
             let offers = matches!(origin, Origin::Table);
             let below = below.translate(vec2(0.0, 28.0)).with_max_y(rect.bottom());
-            let made = offers.then(|| offer(ui, below, LACKS, (&origin, family), controls)).flatten();
+            let made = offers.then(|| offer(ui, below, LACKS, (&origin, shown), controls)).flatten();
             model.or(other).or(made)?
         };
         Some(BodyEdit::make(&origin, changed, what, shown.loaded(), controls))
@@ -80,7 +78,7 @@ impl Things {
         ui: &Ui,
         rect: Rect,
         origin: &Origin,
-        family: Option<Family>,
+        shown: &Shown,
         controls: &mut Controls,
     ) -> Option<(Origin, String)> {
         let palette = controls.palette;
@@ -116,10 +114,18 @@ impl Things {
         picked = model_field(ui, next(20.0), origin, controls).or(picked);
         next(2.0);
         // A table of modes has no material: to choose one is to make it the body as which it is drawn.
-        let (deed, suggested) = suggestion(origin, family);
+        let (deed, suggested) = suggestion(origin, shown);
         if origin.body().is_some() {
             line(ui.painter(), next(14.0), Align2::LEFT_CENTER, "What it is made of", SMALL, palette.muted);
         } else {
+            line(
+                ui.painter(),
+                next(14.0),
+                Align2::LEFT_CENTER,
+                "Modes alone, of no material yet",
+                SMALL,
+                palette.muted,
+            );
             let response = button(ui, next(20.0), &deed, &deed, Look::Main, palette);
             if response.hovered() {
                 *controls.hint = Hint::new(&deed, "Of the material below that is clicked, or of the usual one.");

@@ -49,7 +49,7 @@ fn details(route: &Route, guide: &Guide) -> String {
     }
 }
 
-/// Shows all places of routes. Only those of a preset `is_editable`: a kit's sounds have routes of their own.
+/// Shows all routes, and a place to add one. Only those of a preset `is_editable`: a kit's sounds have routes of their own.
 pub(in crate::editor) fn show(
     ui: &mut Ui,
     rect: Rect,
@@ -65,15 +65,17 @@ pub(in crate::editor) fn show(
     let left = line(ui, title, "WHAT MOVES WHAT", SMALL, palette.muted) + GAP;
     let says = match (is_editable, patch.routes.iter().next()) {
         (false, _) => "of the pad that was struck or chosen last: Edit, on Kit, to change them",
-        (true, None) => "nothing yet: drag a source to a knob, or click a place below",
+        (true, None) => "nothing yet: drag a source to a knob, or add a route below",
         (true, Some(_)) => "",
     };
     line(ui, title.with_min_x(left).with_max_x(title.right() - TITLE_HEIGHT), says, SMALL, palette.muted);
     let visible = ((rect.height() - TITLE_HEIGHT - PADDING / 2.0) / ROW).max(1.0) as usize;
+    let free = (0..MAX_ROUTES).find(|place| is_editable && patch.routes.get(*place).is_none());
+    let places: Vec<usize> = patch.routes.iter().map(|(place, _)| place).chain(free).collect();
     // As many columns as the rows need; where fewer fit, the rows are scrolled.
     let most = ((inner.width() + 2.0 * GAP) / (LEAST + 2.0 * GAP)).max(1.0) as usize;
-    let rows = visible.max(MAX_ROUTES.div_ceil(most));
-    let columns = MAX_ROUTES.div_ceil(rows);
+    let columns = places.len().div_ceil(visible).clamp(1, most);
+    let rows = places.len().div_ceil(columns);
     let gaps = (columns - 1) as f32 * 2.0 * GAP;
     let scroll_bar = if rows > visible { 2.0 * GAP } else { 0.0 };
     let width = (inner.width() - gaps - scroll_bar) / columns as f32;
@@ -84,8 +86,8 @@ pub(in crate::editor) fn show(
     ScrollArea::vertical().auto_shrink(false).show(&mut inner_ui, |ui| {
         let size = vec2(inner.width() - scroll_bar, rows as f32 * ROW);
         let (area, _) = ui.allocate_exact_size(size, Sense::hover());
-        for place in 0..MAX_ROUTES {
-            let (column, row) = (place / rows, place % rows);
+        for (order, place) in places.into_iter().enumerate() {
+            let (column, row) = (order / rows, order % rows);
             let corner = area.min + vec2(column as f32 * (width + 2.0 * GAP), row as f32 * ROW);
             let cell = Rect::from_min_size(corner, vec2(width, ROW - 2.0));
             let value = cell.with_min_x(cell.right() - VALUE);
@@ -102,7 +104,9 @@ pub(in crate::editor) fn show(
             }
             match patch.routes.get(place) {
                 None => {
-                    line(ui, sentence, &name(place, &patch.routes, guide), SMALL, palette.muted);
+                    let left = MAX_ROUTES - patch.routes.iter().count();
+                    let words = format!("+ {}: {left} of {MAX_ROUTES} are free", name(place, &patch.routes, guide));
+                    line(ui, sentence, &words, SMALL, palette.muted);
                 }
                 Some(route) => {
                     let info = amount_param(place).info();

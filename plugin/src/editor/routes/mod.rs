@@ -21,15 +21,23 @@ const AMOUNT: f32 = 25.0;
 pub(super) const OF_KITS: &str = "a kit’s sounds have routes of their own";
 const ALL_TAKEN: &str = "all sixteen routes are taken";
 
-/// The name of a source as shown to the user; for a macro, the preset's name for it.
+/// The name of a source as shown to the user, such as `LFO 1`; for a macro, the preset's name for it: a macro *Pressure* is not the
+/// pressure of the keys.
 pub(super) fn source_name(source: Source, guide: &Guide) -> String {
-    guide.macro_name(source.id()).map_or_else(|| source.id().replace('_', " "), str::to_owned)
+    if let Some(name) = guide.macro_name(source.id()) {
+        return format!("macro {name}");
+    }
+    let mut name = source.id().replace('_', " ").replace("lfo", "LFO");
+    if let Some(number) = name.find(|letter: char| letter.is_ascii_digit()) {
+        name.insert(number, ' ');
+    }
+    name
 }
 
-/// The name of a route, such as `wheel › Vibrato`; for an empty place, its number.
+/// The name of a route, such as `wheel › Vibrato`; what one does with an empty place.
 pub(super) fn name(place: usize, routes: &Routes, guide: &Guide) -> String {
     let Some(Route { source, destination, scale, .. }) = routes.get(place) else {
-        return format!("{}: free", place + 1);
+        return "add a route".to_owned();
     };
     let scale = scale.map_or(String::new(), |scale| format!(" × {}", source_name(scale, guide)));
     format!("{}{scale} › {}", source_name(source, guide), destination.info().name)

@@ -342,6 +342,12 @@ fn a_family_is_shown_whole_and_a_search_can_be_cleared() {
     assert!(is_listed(&stage, "Marimba"));
     stage.type_text("vibraphone");
     assert!(is_listed(&stage, "Vibraphone") && !is_listed(&stage, "Marimba"), "and what is typed then is searched");
+    stage.button("Clear the search");
+    stage.type_text("church bell");
+    assert!(is_listed(&stage, "Church Bell") && stage.paints("None in Mallet. Elsewhere:"), "it is no mallet's");
+    stage.button("Clear the search");
+    stage.type_text("qwertz");
+    assert!(!stage.paints("None in Mallet. Elsewhere:"));
 }
 
 #[test]
@@ -412,6 +418,7 @@ fn tags_narrow_the_list_together_and_go_with_another_family() {
 fn sounds_like_one_are_found_in_the_background() {
     let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
     stage.button("Browse");
+    stage.type_text("marimba");
     stage.button("Find sounds like this one");
     assert!(stage.harness.query_by_label("Cancel the comparison").is_some(), "it can be cancelled");
     let end = std::time::Instant::now() + std::time::Duration::from_secs(300);

@@ -242,7 +242,7 @@ fn a_route_is_added_by_a_right_click_and_changed_on_its_page() {
     stage.harness.run_steps(3);
     stage.harness.get_by_label_contains("Modulate by").click();
     stage.harness.run_steps(3);
-    stage.button("lfo1");
+    stage.button("LFO 1");
     let added = routes(&stage);
     let (place, route) = added.iter().find(|(place, route)| before.1.get(*place) != Some(*route)).unwrap();
     assert_eq!((route.source, route.destination), (Source::Lfo1, Param::MalletSpeed));
@@ -250,7 +250,7 @@ fn a_route_is_added_by_a_right_click_and_changed_on_its_page() {
     assert!(is_one_gesture(&stage.host.calls(), amount_param(place).info().name));
     stage.harness.get_by_role_and_label(Role::Tab, "Motion").click();
     stage.harness.run_steps(3);
-    stage.button(&format!("Route {}: lfo1 › Mallet speed", place + 1));
+    stage.button(&format!("Route {}: LFO 1 › Mallet speed", place + 1));
     stage.button("Remove");
     assert_eq!(routes(&stage).get(place), None);
     for _ in 0..2 {
@@ -280,12 +280,15 @@ fn a_free_place_shows_no_amount_and_leaves_none_to_its_next_route() {
     let place = MAX_ROUTES - 3;
     let param = amount_param(place);
     assert!(routes(&stage).get(place).is_none() && stage.value(param) != 0.0);
-    stage.button(&format!("Route {0}: {0}: free", place + 1));
-    stage.button("Source");
-    stage.button("lfo2");
+    while routes(&stage).get(place).is_none() {
+        let free = (0..MAX_ROUTES).find(|place| routes(&stage).get(*place).is_none()).unwrap();
+        stage.button(&format!("Route {}: add a route", free + 1));
+        stage.button("Source");
+        stage.button("LFO 2");
+    }
     assert!(routes(&stage).get(place).is_some_and(|route| route.source == Source::Lfo2) && has_knob(&stage, place));
     assert_eq!(stage.value(param), 25.0, "as of every new route");
-    stage.harness.get_by_label_contains(&format!("Route {}: lfo2", place + 1)).click();
+    stage.harness.get_by_label_contains(&format!("Route {}: LFO 2", place + 1)).click();
     stage.harness.run_steps(3);
     stage.button("Remove");
     assert!(!has_knob(&stage, place) && stage.value(param) == param.info().default);

@@ -217,6 +217,17 @@ fn the_values_of_one_sound_go_with_it_and_end_with_it() {
 }
 
 #[test]
+fn a_click_puts_a_sound_beside_that_of_a_new_kit() {
+    let mut stage = at("Marimba", SIZE, Theme::Dark);
+    stage.button("Make a kit of this sound");
+    stage.sound("Taiko");
+    stage.button("Put Taiko");
+    let kit = stage.kit();
+    let pads: Vec<_> = kit.pads.iter().map(|(key, pad)| (*key, kit.sounds[pad.sound].0.as_str())).collect();
+    assert_eq!(pads, [(36, "Marimba"), (38, "Taiko")]);
+}
+
+#[test]
 fn the_search_for_sounds_is_cleared_by_a_button_and_by_leaving() {
     let mut stage = at("Acoustic Kit", SIZE, Theme::Dark);
     for clears in [true, false] {
@@ -332,9 +343,12 @@ fn a_pad_that_shares_its_sound_is_edited_by_itself() {
     let knob = stage.at("Decay");
     stage.drag(knob, vec2(0.0, -22.0), Modifiers::NONE);
     let changed = stage.params.state().values;
-    // Another sound is none of the pad's.
+    // Another sound that is loaded takes its place, also on the pad.
     stage.button("Next sound");
-    assert!(stage.harness.query_by_label("Put back").is_none());
+    let other = stage.params.name();
+    stage.button("Put back");
+    assert!(stage.kit().sounds.iter().any(|(_, sound)| sound.name == other));
+    stage.button("Undo");
     stage.button("Undo");
     stage.button("Put back");
     let kit = stage.kit();

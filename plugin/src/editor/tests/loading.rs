@@ -1,7 +1,9 @@
 //! States that the host loads while the window is open, and the window that stays as it is.
 
-use super::pictures::{Stage, stage};
+use super::pictures::{Stage, facing, stage};
 use crate::editor::theme::{SIZE, Theme};
+use crate::editor::window::Face;
+use crate::params::SprungParams;
 use crate::state::{FIELD, State};
 use egui::{Event, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -12,13 +14,18 @@ use sprung::params::Param;
 use sprung::preset::Playable;
 use std::collections::BTreeMap;
 
+/// Loads a sound as the host does it, with a view of its own.
+fn host_loads(params: &SprungParams, sound: &str) {
+    let State { seed, mut view, .. } = State::default();
+    (view.size, view.zoom, view.theme) = ([800, 600], 150, Theme::Light);
+    let state = State::new(Playable::find(sound).unwrap(), seed, view);
+    params.deserialize_fields(&BTreeMap::from([(FIELD.to_owned(), state.to_json())]));
+}
+
 impl Stage {
-    /// Loads a sound as the host does it, with a view of its own.
+    /// The host loads a sound while the window is open.
     fn host_loads(&mut self, sound: &str) {
-        let State { seed, mut view, .. } = State::default();
-        (view.size, view.zoom, view.theme) = ([800, 600], 150, Theme::Light);
-        let state = State::new(Playable::find(sound).unwrap(), seed, view);
-        self.params.deserialize_fields(&BTreeMap::from([(FIELD.to_owned(), state.to_json())]));
+        host_loads(&self.params, sound);
         self.harness.run_steps(3);
     }
 
@@ -36,6 +43,28 @@ impl Stage {
         });
         self.harness.run_steps(2);
     }
+}
+
+#[test]
+fn what_can_be_undone_and_what_is_not_saved_outlives_the_window() {
+    let mut stage = facing(Face::Play, "Marimba", SIZE, 1.0, Theme::Dark);
+    let before = stage.params.state();
+    stage.button("Next sound");
+    let loaded = stage.params.state();
+    stage.harness.get_by_label("Noise alone").click();
+    stage.harness.run_steps(3);
+    let is_marked = |stage: &Stage| stage.paints(&format!("{} *", stage.params.name()));
+    assert!(is_marked(&stage) && stage.params.state() != loaded);
+    let mut stage = stage.reopened(|_| ());
+    assert!(is_marked(&stage));
+    stage.button("Undo");
+    assert!(stage.params.state() == loaded && !is_marked(&stage));
+    stage.button("Undo");
+    assert!(stage.params.state() == before);
+    stage.button("Redo");
+    // A state that the host loads meanwhile is another project's.
+    let stage = stage.reopened(|params| host_loads(params, "Church Bell"));
+    assert!(!stage.can("Undo") && !stage.can("Redo"));
 }
 
 #[test]

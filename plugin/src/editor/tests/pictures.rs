@@ -6,7 +6,7 @@ use super::fake_host::FakeHost;
 use super::renderer::Renderer;
 use crate::editor::theme::layout::Layout;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
-use crate::editor::window::{Face, Window};
+use crate::editor::window::{Face, Past, Window};
 use crate::params::SprungParams;
 use crate::state::State;
 use egui::{Pos2, Rect, vec2};
@@ -33,6 +33,18 @@ pub(super) struct Stage {
     pub(super) harness: Harness<'static>,
     /// The user's library.
     pub(super) folder: tempfile::TempDir,
+    past: Past,
+}
+
+impl Stage {
+    /// Closes the window, and opens one again.
+    pub(super) fn reopened(self, meanwhile: impl FnOnce(&SprungParams)) -> Self {
+        let Self { params, host, harness, folder, past } = self;
+        drop(harness);
+        meanwhile(&params);
+        let harness = open(&params, &host, folder.path(), &past, Face::Play, (SIZE, 1.0));
+        Self { params, host, harness, folder, past }
+    }
 }
 
 /// A window with a factory sound that shows all of it.
@@ -46,8 +58,20 @@ pub(super) fn facing(face: Face, sound: &str, size: [u32; 2], scale: f32, theme:
     let State { seed, mut view, .. } = State::default();
     view.theme = theme;
     params.load(State::new(Playable::find(sound).unwrap(), seed, view).into());
-    let folder = tempfile::tempdir().unwrap();
-    let mut window = Window::new(params.clone(), Some(Library::at(folder.path())));
+    let (folder, past) = (tempfile::tempdir().unwrap(), Past::default());
+    let harness = open(&params, &host, folder.path(), &past, face, (size, scale));
+    Stage { params, host, harness, folder, past }
+}
+
+fn open(
+    params: &Arc<SprungParams>,
+    host: &Arc<FakeHost>,
+    library: &Path,
+    past: &Past,
+    face: Face,
+    (size, scale): ([u32; 2], f32),
+) -> Harness<'static> {
+    let mut window = Window::new(params.clone(), Some(Library::at(library)), past.clone());
     let context = host.context();
     window.open(context.clone());
     window.turn_to(face);
@@ -64,7 +88,7 @@ pub(super) fn facing(face: Face, sound: &str, size: [u32; 2], scale: f32, theme:
             window.contents(ui, &context);
         });
     harness.run_steps(3);
-    Stage { params, host, harness, folder }
+    harness
 }
 
 /// Compares a picture with the accepted one, or accepts it.
@@ -124,12 +148,16 @@ fn check_in_steps(name: &str, found: RgbaImage, step: u8) {
         println!("blessed {name}");
         return;
     }
-    let actual = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../target/pictures");
-    std::fs::create_dir_all(&actual).unwrap();
-    found.save(actual.join(format!("{name}.png"))).unwrap();
     let accepted = image::open(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display())).into_rgba8();
     let differing = differing(&found, &accepted, step);
-    assert_eq!(differing, 0, "{name}: see target/pictures; `cargo xtask bless pictures` accepts the present pictures");
+    if differing > 0 {
+        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../target/pictures");
+        std::fs::create_dir_all(&folder).unwrap();
+        found.save(folder.join(format!("{name}.png"))).unwrap();
+        panic!(
+            "{name}: {differing} pixels, see target/pictures; `cargo xtask bless pictures` accepts the present pictures"
+        );
+    }
 }
 
 /// A picture with its colours rounded to steps.

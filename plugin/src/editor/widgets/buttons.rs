@@ -3,7 +3,7 @@
 use super::text::line;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{Palette, SMALL, TEXT};
-use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
+use egui::{Align2, Color32, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
 
 /// How a button looks.
 #[derive(Clone, Copy, PartialEq)]
@@ -26,13 +26,14 @@ pub(crate) fn button(ui: &Ui, rect: Rect, text: &str, name: &str, look: Look, pa
         Look::Off | Look::On => WidgetInfo::selected(Role::Button, true, look == Look::On, name),
         _ => WidgetInfo::labeled(Role::Button, look != Look::Disabled, name),
     });
-    let (fill, colour) = match look {
-        Look::On | Look::Main => (palette.accent, palette.on_accent),
-        Look::Disabled => (palette.ground, palette.muted.gamma_multiply(0.55)),
-        Look::Plain | Look::Off if response.hovered() => (palette.raised, palette.text),
-        Look::Plain | Look::Off => (palette.panel, palette.text),
+    // What can be used now has a face, on the ground and on a panel.
+    let (fill, edge, colour) = match look {
+        Look::On | Look::Main => (palette.accent, palette.outline, palette.on_accent),
+        Look::Disabled => (Color32::TRANSPARENT, Color32::TRANSPARENT, palette.muted),
+        Look::Plain | Look::Off if response.hovered() => (palette.raised, palette.muted, palette.text),
+        Look::Plain | Look::Off => (palette.raised, palette.outline, palette.text),
     };
-    ui.painter().rect(rect, 4.0, fill, Stroke::new(1.0, palette.outline), StrokeKind::Inside);
+    ui.painter().rect(rect, 4.0, fill, Stroke::new(1.0, edge), StrokeKind::Inside);
     if response.has_focus() {
         ui.painter().rect_stroke(rect, 4.0, Stroke::new(1.5, palette.accent), StrokeKind::Inside);
     }

@@ -44,7 +44,7 @@ pub(crate) fn paint(ui: &Ui, within: Rect, face: &Face, palette: &Palette) -> Re
         pos2(inner.left(), cancel.center().y - 3.0),
         pos2(cancel.left() - PADDING, cancel.center().y + 3.0),
     );
-    ui.painter().rect_filled(groove, 3.0, palette.raised);
+    ui.painter().rect_filled(groove, 3.0, palette.line);
     let filled = groove.with_max_x(groove.left() + groove.width() * face.share as f32);
     ui.painter().rect_filled(filled, 3.0, palette.accent);
     let bar = ui.interact(groove, Id::unique(("work progress", face.verb)), Sense::hover());

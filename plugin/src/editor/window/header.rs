@@ -72,7 +72,8 @@ pub(super) struct Header<'a> {
     pub(super) pad: Option<&'a str>,
     pub(super) is_changed: bool,
     pub(super) is_browsing: bool,
-    pub(super) face: Face,
+    /// The face that is shown, if no other page covers it.
+    pub(super) face: Option<Face>,
     /// Whether the second version is shown.
     pub(super) is_b: bool,
     /// Whether the two versions differ.
@@ -103,11 +104,11 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
     }
     for (face, name, help) in FACES {
         let place = next(width(ui.painter(), name, SMALL + 1.0) + if is_narrow { 6.0 } else { 20.0 });
-        let response = tab(ui, place, name, face == header.face, palette);
+        let response = tab(ui, place, name, Some(face) == header.face, palette);
         if response.hovered() {
             *controls.hint = Hint::new(name, help);
         }
-        if response.clicked() || face != header.face && carry::dwells(ui, place, controls) {
+        if response.clicked() || Some(face) != header.face && carry::dwells(ui, place, controls) {
             request = Some(Request::Show(face));
         }
     }

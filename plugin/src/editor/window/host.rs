@@ -6,6 +6,7 @@ use crate::editor::binding;
 use crate::editor::host::accessibility;
 use crate::editor::host::extent;
 use crate::editor::theme::{LEAST_SIZE, Theme};
+use crate::lock::lock;
 use crate::state::{View, WINDOW_RANGE};
 use egui::{Rgba, Ui, ViewportCommand, vec2};
 use nice_plug_core::context::PluginApi;
@@ -13,6 +14,7 @@ use nice_plug_core::context::gui::GuiContext;
 use nice_plug_egui::baseview::{HandlerError, WindowSize};
 use nice_plug_egui::resizable_window::ResizableWindow;
 use nice_plug_egui::{Frame, KeyCapture, NiceEguiApp};
+use std::mem::take;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 impl NiceEguiApp for Window {
@@ -79,7 +81,8 @@ fn ground(theme: Theme) -> Rgba {
     Rgba::from_rgb(red, green, blue)
 }
 
-/// Dropping the window is the only sign that it was closed: held keys and the gesture are ended here.
+/// Dropping the window is the only sign that it was closed: held keys and the gesture are ended here, and the next window goes on with
+/// what can be undone.
 impl Drop for Window {
     fn drop(&mut self) {
         let link = self.params.link();
@@ -99,5 +102,7 @@ impl Drop for Window {
             // end.
             let _ = catch_unwind(AssertUnwindSafe(end));
         }
+        self.history.cancel();
+        *lock(&self.past.0) = Some((take(&mut self.history), take(&mut self.versions), self.loads));
     }
 }

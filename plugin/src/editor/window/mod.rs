@@ -33,6 +33,7 @@ use crate::editor::play::PlayPage;
 use crate::editor::routes::{carry, learn};
 use crate::editor::theme::layout::Layout;
 use crate::editor::theme::{Theme, ZOOMS, install_fonts};
+use crate::lock::lock;
 use crate::params::SprungParams;
 use egui::{Event, Key, Modifiers, Ui};
 pub(super) use header::Face;
@@ -46,7 +47,7 @@ use sprung::internals::library::Library;
 use status::{Load, StatusLine};
 use std::collections::BTreeSet;
 use std::hash::{BuildHasher as _, RandomState};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use versions::Versions;
 
 /// Longest time in seconds by which moving pictures go on in one pass: after a pause they go on where they were.
@@ -62,9 +63,15 @@ enum Over {
     Devices,
 }
 
+/// What a window leaves to the next one when it is closed: the steps that can be undone, the two versions of the sound, and how many
+/// states the host had loaded.
+#[derive(Clone, Default)]
+pub(super) struct Past(Arc<Mutex<Option<(History, Versions, u64)>>>);
+
 /// An open window.
 pub(super) struct Window {
     params: Arc<SprungParams>,
+    past: Past,
     host: Option<GuiContext>,
     interaction: Interaction,
     history: History,
@@ -122,14 +129,17 @@ fn topic(over: Option<Over>, face: Face, pages: &Pages) -> &'static str {
 
 impl Window {
     /// A window that stores the user's sounds in a library; `None` if the system names no folder for user data.
-    pub(super) fn new(params: Arc<SprungParams>, library: Option<Library>) -> Self {
+    pub(super) fn new(params: Arc<SprungParams>, library: Option<Library>, past: Past) -> Self {
         let shown = Shown::new(&params);
-        let (zoom, loads) = (extent::factor(params.view()), params.loads());
+        let zoom = extent::factor(params.view());
+        let (history, versions, loads) =
+            lock(&past.0).take().unwrap_or_else(|| (History::default(), Versions::default(), params.loads()));
         Self {
             params,
+            past,
             host: None,
             interaction: Interaction::default(),
-            history: History::default(),
+            history,
             shown,
             browser: Browser::new(library),
             modes: ModesView::default(),
@@ -153,7 +163,7 @@ impl Window {
             picker: Picker::default(),
             over: None,
             under: None,
-            versions: Versions::default(),
+            versions,
             context: None,
             zoom,
             screen: None,
@@ -233,7 +243,7 @@ impl Window {
             pad: pad.as_deref(),
             is_changed: controls.history.is_changed(),
             is_browsing: self.over == Some(Over::Browser),
-            face: self.face,
+            face: self.over.is_none().then_some(self.face),
             is_b: self.versions.is_b,
             versions_differ: self.versions.differ(&params),
             view,

@@ -50,7 +50,7 @@ impl Load {
 /// The state of the engine as text.
 pub(super) fn engine(voices: u32, load: Option<f64>, sample_rate: u32) -> String {
     match sample_rate {
-        0 => "not playing".to_owned(),
+        0 => "audio is off".to_owned(),
         rate => {
             let load = load.map_or(String::new(), |load| format!("   {:.1} % CPU", load * 100.0));
             format!("{}{load}   {} kHz", counted(voices as usize, "voice"), f64::from(rate) / 1000.0)

@@ -1,6 +1,7 @@
 //! Random variations of a sound: from parts of factory sounds, or by small changes. Locked sections stay as they are.
 
-use egui::Ui;
+use crate::editor::theme::PADDING;
+use egui::{ScrollArea, Ui};
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::{PARAMS, Param, ParamInfo, Unit};
 use sprung::patch::Patch;
@@ -134,12 +135,16 @@ pub(super) fn menu(ui: &mut Ui, locked: &BTreeSet<&'static str>) -> Option<Varia
     }
     ui.separator();
     ui.label("Locked sections stay as they are");
-    for section in sections().map(|section| section[0].section) {
-        let mut is_locked = locked.contains(section);
-        if ui.checkbox(&mut is_locked, format!("Lock {section}")).clicked() {
-            asked = Some(VariationRequest::Lock(section));
+    // In a small window, not all are seen at once.
+    let room = ui.ctx().content_rect().bottom() - ui.cursor().top() - 2.0 * PADDING;
+    ScrollArea::vertical().max_height(room).show(ui, |ui| {
+        for section in sections().map(|section| section[0].section) {
+            let mut is_locked = locked.contains(section);
+            if ui.checkbox(&mut is_locked, format!("Lock {section}")).clicked() {
+                asked = Some(VariationRequest::Lock(section));
+            }
         }
-    }
+    });
     asked
 }
 

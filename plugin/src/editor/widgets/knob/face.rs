@@ -7,6 +7,12 @@ use crate::marks::{Colour, Mark};
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use std::f32::consts::PI;
 
+/// A position on a knob that only moves the value of each pad: what leaves that as it is points upwards.
+pub(super) fn around(neutral: f32, position: f32) -> f32 {
+    let side = if position < neutral { neutral } else { 1.0 - neutral };
+    0.5 + 0.5 * (position - neutral) / side.max(1e-6)
+}
+
 /// Contents of a face. Positions are 0 to 1.
 pub(super) struct Face<'a> {
     pub(super) position: f32,

@@ -109,9 +109,12 @@ pub(crate) fn show(
     let parts = Parts::of(cell);
     let turned = turn(ui, cell.with_max_y(parts.value.top()), parts.value, TRAVEL, info, controls);
     let palette = controls.palette;
+    let neutral = info.normalise(info.default) as f32;
+    let is_relative = controls.own(info).is_some();
+    let shown = |position| if is_relative { face::around(neutral, position) } else { position };
     let face = Face {
-        position: controls.position(info),
-        origin: info.normalise(info.default) as f32,
+        position: shown(controls.position(info)),
+        origin: shown(neutral),
         offset: controls.params.knobs()[info.param as usize].offset(),
         ring,
         is_hovered: turned.is_hovered,
