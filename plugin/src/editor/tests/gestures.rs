@@ -295,6 +295,24 @@ fn a_free_place_shows_no_amount_and_leaves_none_to_its_next_route() {
 }
 
 #[test]
+fn what_a_knob_does_is_said_at_the_pointer_once_that_rests() {
+    let mut stage = Stage::new();
+    let knob = stage.at("Mallet speed");
+    let tip = |stage: &Stage| {
+        let help = Param::MalletSpeed.info().help;
+        stage.harness.query_by_label_contains(help).map(|tip| tip.rect().distance_to_pos(knob))
+    };
+    stage.harness.event(Event::PointerMoved(knob));
+    stage.harness.run_steps(3);
+    assert_eq!(tip(&stage), None, "it moves");
+    stage.harness.run_steps(60);
+    assert!(tip(&stage).is_some_and(|distance| distance < 50.0), "{:?}", tip(&stage));
+    stage.harness.event(Event::PointerMoved(knob + vec2(0.0, 2.0)));
+    stage.harness.run_steps(3);
+    assert_eq!(tip(&stage), None, "it moves again");
+}
+
+#[test]
 fn the_hosts_own_menu_opens_where_the_entry_is() {
     let mut stage = Stage::new();
     let open = |stage: &mut Stage| {

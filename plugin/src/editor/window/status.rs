@@ -2,20 +2,21 @@
 
 use crate::editor::controls::{Hint, Said};
 use crate::editor::theme::{Palette, SMALL};
-use crate::editor::widgets::text::{least_width, line, width};
-use egui::{Align2, Id, Popup, PopupAnchor, Rect, RectAlign, Role, Sense, Tooltip, Ui, WidgetInfo, pos2};
+use crate::editor::widgets::text::{line, width};
+use egui::{Align2, Id, Popup, PopupAnchor, Rect, Role, Sense, Tooltip, Ui, WidgetInfo, pos2};
 use sprung::internals::display::Telemetry;
 use sprung::internals::text::counted;
 use std::time::Duration;
 
 /// How often the load is computed, in seconds.
 const INTERVAL: f64 = 0.5;
-/// Seconds for which the pointer rests before a hint that is cut in the line is shown whole.
+/// Seconds for which the pointer rests before a hint is shown at it, and its distance from there.
 const REST: f32 = 0.7;
+const GAP: f32 = 14.0;
 /// Seconds for which it stays what was done.
 const STAYS: f64 = 8.0;
 /// The largest width of such a hint.
-const WIDEST: f32 = 400.0;
+const WIDEST: f32 = 300.0;
 /// Space between the title of a hint and its help.
 const TITLE_GAP: f32 = 10.0;
 
@@ -100,10 +101,9 @@ impl StatusLine {
             self.is_unread = !text_of(message).is_empty();
         }
         let hint = hint.filter(|_| !self.is_unread);
-        let room = paint(ui, rect, hint, message, right, palette);
-        let is_cut = |hint: &&Hint| hinted(ui, hint) > room;
-        if let Some(hint) = hint.filter(is_cut) {
-            show_above(ui, rect, hint);
+        paint(ui, rect, hint, message, right, palette);
+        if let Some(hint) = hint {
+            show_tooltip(ui, hint);
         }
         let left = *self.since.get_or_insert(now) + STAYS - now;
         // What went wrong may last.
@@ -115,20 +115,14 @@ impl StatusLine {
     }
 }
 
-/// The least width of a hint in the line, where its help may be drawn smaller.
-fn hinted(ui: &Ui, Hint { title, help }: &Hint) -> f32 {
-    width(ui.painter(), title, SMALL) + TITLE_GAP + least_width(ui.painter(), help, SMALL)
-}
-
-/// Shows a hint above the line, whole, once the pointer has rested: beside the pointer it would hide what one compares.
-fn show_above(ui: &Ui, rect: Rect, Hint { title, help }: &Hint) {
+/// Shows a hint at the pointer, once that has rested.
+fn show_tooltip(ui: &Ui, Hint { title, help }: &Hint) {
     let (rested, is_down) = ui.input(|input| (input.pointer.time_since_last_movement(), input.pointer.any_down()));
     if rested < REST {
         ui.ctx().request_repaint_after(Duration::from_secs_f32(REST - rested));
     } else if !is_down && !Popup::is_any_open(ui.ctx()) && !ui.ctx().egui_wants_keyboard_input() {
-        let anchor = PopupAnchor::ParentRect(rect);
-        let mut tip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), Id::unique("hint"), anchor);
-        tip.popup = tip.popup.align(RectAlign::TOP_START);
+        let id = Id::unique("hint");
+        let tip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), id, PopupAnchor::Pointer).gap(GAP);
         tip.width(WIDEST).show(|ui| {
             ui.strong(title);
             if !help.is_empty() {
@@ -144,8 +138,8 @@ fn text_of(message: &Said) -> &str {
     text
 }
 
-/// Paints the line. Returns the room for a message or a hint.
-fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, said: &Said, right: &str, palette: &Palette) -> f32 {
+/// Paints the line.
+fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, said: &Said, right: &str, palette: &Palette) {
     let (painter, message) = (ui.painter(), text_of(said));
     let right_width = width(painter, right, SMALL);
     line(painter, rect, Align2::RIGHT_CENTER, right, SMALL, palette.muted);
@@ -170,7 +164,6 @@ fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, said: &Said, right: &str, pal
             line(painter, left, Align2::LEFT_CENTER, message, SMALL, colour);
         }
     }
-    left.width()
 }
 
 #[cfg(test)]
