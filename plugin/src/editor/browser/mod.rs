@@ -139,15 +139,17 @@ impl Browser {
         self.tags.show(ui, tags, &found, palette);
         let mut says = String::new();
         if found.is_empty() {
-            says = self.category.invitation().to_owned();
-            if says.is_empty() || !self.words.trim().is_empty() || !self.tags.are_empty() {
+            let invitation = self.category.invitation();
+            if !invitation.is_empty() && self.words.trim().is_empty() && self.tags.are_empty() {
+                says = invitation.to_owned();
+            } else {
                 found = sounds.find(Category::All, &self.words, &[]);
                 self.tags.retain(&mut found);
                 says = format!("None in {}. Elsewhere:", self.category.name());
-            }
-            if found.is_empty() && says.ends_with(':') {
-                let (near, none) = sounds.nearest(&self.words, |_| true);
-                (found, says) = (near, none.to_owned());
+                if found.is_empty() {
+                    let (near, none) = sounds.nearest(&self.words, |_| true);
+                    (found, says) = (near, none.to_owned());
+                }
             }
         }
         let chosen = match command {

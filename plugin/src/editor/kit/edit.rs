@@ -15,8 +15,9 @@ use sprung::units::note_name;
 /// What comes of editing a pad.
 pub(in crate::editor) const EDITS: &str =
     "Opens the sound alone, to change it; Put back, beside its name, returns it to its pad. Effects stay the kit’s.";
-/// The key of the first pad of a new kit: that of a kick.
+/// The key of the first pad of a new kit, that of a kick, and of the second, that of a snare.
 pub(super) const FIRST: u8 = 36;
+pub(super) const SECOND: u8 = 38;
 
 /// Changes the kit as one step that can be undone.
 pub(super) fn change(what: String, controls: &mut Controls, edit: impl FnOnce(&mut KitPreset)) {

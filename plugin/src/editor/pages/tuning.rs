@@ -63,9 +63,9 @@ impl TuningPage {
         if let Some(place) = picked {
             message = Some(tune(place.checked_sub(1).map(|place| SCALES[place].1), controls));
         }
-        let mapped = if own.is_some_and(|own| own.keymap().is_some()) { ", mapped" } else { "" };
+        let mapped = if own.is_some_and(|own| own.keymap().is_some()) { "mapped" } else { "on keys in a row" };
         let second = side.with_min_y(side.top() + 22.0).with_max_y(side.top() + 38.0);
-        line(ui.painter(), second, Align2::LEFT_CENTER, &format!("{steps}{mapped}"), SMALL, palette.muted);
+        line(ui.painter(), second, Align2::LEFT_CENTER, &format!("{steps} {mapped}, in Hz"), SMALL, palette.muted);
         let bottom = Rect::from_min_max(pos2(side.left(), side.bottom() - 22.0), side.max);
         let field = bottom.with_max_x(bottom.right() - 102.0);
         let edit = TextEdit::singleline(&mut self.path).id(Id::unique("scale path")).hint_text(".scl or .kbm");

@@ -196,7 +196,7 @@ mod tests {
         for (said, colour) in [(Ok("saved"), palette.text), (Err("refused"), palette.warning)] {
             let said = said.map(str::to_owned).map_err(str::to_owned);
             let mut output =
-                context.run_ui(egui::RawInput::default(), |ui| _ = paint(ui, ui.max_rect(), None, &said, "", palette));
+                context.run_ui(egui::RawInput::default(), |ui| paint(ui, ui.max_rect(), None, &said, "", palette));
             let words = text_of(&said);
             let is_it = |shape: &egui::epaint::ClippedShape| matches!(&shape.shape, egui::Shape::Text(text) if text.galley.text() == words && text.fallback_color == colour);
             assert!(output.shapes.iter().any(is_it), "{words}");
