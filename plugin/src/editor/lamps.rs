@@ -2,7 +2,9 @@
 
 use crate::editor::controls::Controls;
 use egui::{Id, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo};
-use sprung::params::Param;
+use sprung::params::{Param, ParamInfo};
+use sprung::patch::Patch;
+use sprung::patch::routes::amount_param;
 
 /// A part of the sound that can be off.
 pub(crate) struct Lamp {
@@ -55,6 +57,33 @@ const OTHERS: [Lamp; 6] = [
     lamp("Space", Param::Space, 1.0, "A plate, a spring tank or a room that reverberates."),
 ];
 
+/// Parameters that do nothing while all of some others are at their defaults, and those others.
+const DEPENDENT: [(&[Param], &[Param]); 8] = [
+    (&[Param::NoiseSpacing], &[Param::NoiseHits]),
+    (&[Param::BloomTime], &[Param::Bloom]),
+    (&[Param::DriftRate], &[Param::DriftLevel, Param::DriftPitch]),
+    (&[Param::TouchPosition], &[Param::Touch]),
+    (&[Param::SweepTime, Param::SweepCurve], &[Param::Sweep]),
+    (&[Param::VibratoRate, Param::VibratoDelay, Param::VibratoSync], &[Param::Vibrato]),
+    (&[Param::GlideWhen, Param::GlideBy], &[Param::Glide]),
+    (&[Param::UnisonDetune, Param::UnisonSpread, Param::UnisonPhase], &[Param::Unison]),
+];
+
+/// Whether turning a parameter of a preset can be heard. Those of a kit move other sounds than the one that is shown, too.
+pub(crate) fn has_effect(info: &ParamInfo, patch: &Patch, controls: &Controls) -> bool {
+    let others = DEPENDENT.iter().find(|(dependent, _)| dependent.contains(&info.param)).map(|(_, others)| *others);
+    let is_at_rest = |param: &Param| controls.value(param.info()) == param.info().default;
+    controls.own(info).is_some()
+        || others
+            .is_none_or(|others| !others.iter().all(is_at_rest) || is_raised(others.iter().copied(), patch, controls))
+}
+
+/// Whether a route can move one of these parameters.
+pub(crate) fn is_raised(params: impl Iterator<Item = Param> + Clone, patch: &Patch, controls: &Controls) -> bool {
+    let mut routes = patch.routes.iter().filter(|(_, route)| params.clone().any(|param| param == route.destination));
+    routes.any(|(place, _)| controls.value(amount_param(place).info()) != 0.0)
+}
+
 /// The lamp of a preset's section, if it has one. The knobs of a kit move the levels of its sounds and say nothing of them.
 pub(crate) fn of(section: &str) -> Option<&'static Lamp> {
     const ALL: [&[Lamp]; 2] = [&MOVERS, &OTHERS];
@@ -68,7 +97,7 @@ impl Lamp {
     }
 
     /// The parameters that are least while the part is off.
-    pub(crate) fn params(&self) -> impl Iterator<Item = Param> {
+    pub(crate) fn params(&self) -> impl Iterator<Item = Param> + Clone {
         std::iter::once(self.param).chain(self.also)
     }
 
@@ -103,5 +132,49 @@ impl Lamp {
             ui.painter().circle_stroke(rect.center(), 6.0, Stroke::new(1.5, palette.text));
         }
         response
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::engine::{Event, Synth};
+    use sprung::preset::Preset;
+
+    fn bits(patch: &Patch) -> Vec<u32> {
+        let mut synth = Synth::new(48_000.0, 1);
+        synth.set_patch(patch);
+        let [mut left, mut right] = [vec![0.0; 24_000], vec![0.0; 24_000]];
+        // Tied, and apart.
+        let off = |key| Event::note_off(10_000, key);
+        let events = [
+            Event::note_on(0, 60, 0.8),
+            Event::note_on(6_000, 67, 0.8),
+            off(60),
+            off(67),
+            Event::note_on(14_000, 72, 0.8),
+        ];
+        synth.process(&events, &mut left, &mut right);
+        left.iter().chain(&right).map(|sample| sample.to_bits()).collect()
+    }
+
+    #[test]
+    fn what_is_dimmed_changes_no_bit_and_is_heard_otherwise() {
+        let marimba = &Preset::find("Marimba").unwrap().patch;
+        let patch = marimba.clone().with(Param::NoiseLevel, -6.0).with(Param::Voices, 1.0);
+        let at_rest = bits(&patch);
+        for (dependent, others) in DEPENDENT {
+            let moved = others.iter().fold(patch.clone(), |patch, other| {
+                let info = other.info();
+                patch.with(*other, info.denormalise(0.75))
+            });
+            for param in dependent {
+                let info = param.info();
+                let to =
+                    [0.0, 1.0].map(|end| info.denormalise(end)).into_iter().find(|to| *to != info.default).unwrap();
+                assert!(bits(&patch.clone().with(*param, to)) == at_rest, "{}", info.id);
+                assert!(bits(&moved.clone().with(*param, to)) != bits(&moved), "{} with {others:?}", info.id);
+            }
+        }
     }
 }

@@ -3,7 +3,7 @@
 use super::curves;
 use crate::editor::body::face;
 use crate::editor::controls::Controls;
-use crate::editor::lamps::{self, Lamp};
+use crate::editor::lamps::{self, Lamp, has_effect, is_raised};
 use crate::editor::play::stage;
 use crate::editor::routes::Ring;
 use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, SMALL, TITLE_HEIGHT};
@@ -13,7 +13,6 @@ use crate::editor::widgets::text::{fitting, line};
 use egui::{Align2, Painter, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
 use sprung::params::{Choice as _, PARAMS, Param, ParamInfo, Space, Unit};
 use sprung::patch::Patch;
-use sprung::patch::routes::amount_param;
 use sprung::preset::Guide;
 use sprung_picture::Figure;
 
@@ -33,8 +32,8 @@ const LEAST: f32 = 69.0;
 pub(in crate::editor) const ADDED: &str = "added to what each pad has";
 /// Said below a picture of nothing.
 const CHOOSE: &str = "none: choose a type";
-/// How much of the brightness is left of a part that is off.
-const OFF: f32 = 0.6;
+/// How much of the brightness is left of a part that is off, and of a knob that has no effect.
+const OFF: f32 = 0.7;
 
 /// Whether a page shows a section.
 pub(super) fn shows(page: usize, section: &str) -> bool {
@@ -74,11 +73,7 @@ pub(super) fn show(
     controls: &mut Controls,
 ) {
     // What a route can raise is not off.
-    let is_raised = |lamp: &Lamp| {
-        let routes = patch.routes.iter().filter(|(_, route)| lamp.params().any(|param| param == route.destination));
-        routes.map(|(place, _)| controls.value(amount_param(place).info())).any(|amount| amount != 0.0)
-    };
-    let acts = |lamp: &Lamp| !is_preset || lamp.is_on(controls) || is_raised(lamp);
+    let acts = |lamp: &Lamp| !is_preset || lamp.is_on(controls) || is_raised(lamp.params(), patch, controls);
     let is_on = |section: Section| lamps::of(section[0].section).is_none_or(acts);
     let shown: Vec<(Section, bool)> = sections(names)
         .map(|section| (section, is_on(section)))
@@ -199,11 +194,14 @@ pub(in crate::editor) fn knobs(
         let cell = Rect::from_min_size(first.min + offset, first.size() - vec2(0.0, 4.0)).shrink2(vec2(1.0, 0.0));
         let ring = Ring::of(info, &patch.routes, controls);
         let name = short_name(info, guide);
+        let opacity = ui.opacity();
+        ui.set_opacity(if has_effect(info, patch, controls) { opacity } else { opacity.min(OFF) });
         if info.unit == Unit::Choice {
             choice::show(ui, cell, info, &name, controls);
         } else {
             knob::show(ui, cell, info, &name, &ring, controls);
         }
+        ui.set_opacity(opacity);
     }
 }
 
