@@ -3,7 +3,7 @@
 use crate::lock::lock;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering::Relaxed;
-use std::sync::atomic::{AtomicBool, AtomicU32};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 
 /// The user's choices. A field without a value leaves the choice to the program.
@@ -58,7 +58,8 @@ pub(crate) struct DeviceLink {
     /// Whether the program wants the devices to be shown.
     is_wanted: AtomicBool,
     /// Frames of the last block.
-    block: AtomicU32,
+    #[cfg(any(feature = "standalone", test))]
+    block: std::sync::atomic::AtomicU32,
 }
 
 impl DeviceLink {
