@@ -2,8 +2,8 @@
 
 use crate::lock::lock;
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex};
 
 /// The user's choices. A field without a value leaves the choice to the program.

@@ -71,11 +71,12 @@ const DEPENDENT: [(&[Param], &[Param]); 8] = [
 
 /// Whether turning a parameter of a preset can be heard. Those of a kit move other sounds than the one that is shown, too.
 pub(crate) fn has_effect(info: &ParamInfo, patch: &Patch, controls: &Controls) -> bool {
-    let others = DEPENDENT.iter().find(|(dependent, _)| dependent.contains(&info.param)).map(|(_, others)| *others);
-    let is_at_rest = |param: &Param| controls.value(param.info()) == param.info().default;
-    controls.own(info).is_some()
-        || others
-            .is_none_or(|others| !others.iter().all(is_at_rest) || is_raised(others.iter().copied(), patch, controls))
+    let Some((_, others)) = DEPENDENT.iter().find(|(dependent, _)| dependent.contains(&info.param)) else {
+        return true;
+    };
+    let is_modulated = |param: &Param| controls.params.knobs()[*param as usize].offset() != 0.0;
+    let acts = |param: &Param| controls.value(param.info()) != param.info().default || is_modulated(param);
+    controls.own(info).is_some() || others.iter().any(acts) || is_raised(others.iter().copied(), patch, controls)
 }
 
 /// Whether a route can move one of these parameters.

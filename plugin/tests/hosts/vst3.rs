@@ -72,7 +72,10 @@ fn ask(host: &str, questions: &[Value]) -> Vec<Value> {
     let [stdout, stderr] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     assert!(output.status.success(), "{host}: {}\n{stdout}\n{stderr}", output.status);
     // Hosts may print other lines first.
-    serde_json::from_str(stdout.lines().last().unwrap_or_default()).unwrap_or_else(|_| panic!("{host}: {stdout}"))
+    let answers: Vec<Value> =
+        serde_json::from_str(stdout.lines().last().unwrap_or_default()).unwrap_or_else(|_| panic!("{host}: {stdout}"));
+    assert_eq!(answers.len(), questions.len(), "{host}");
+    answers
 }
 
 /// Writes a preset file in the format of VST3 hosts, from a state in the format of CLAP hosts, into a folder.

@@ -32,12 +32,15 @@ pub(crate) fn suggestion(origin: &Origin, shown: &Shown) -> (String, Origin) {
     let suggested = suggested_body(shown.family(), shown.tags());
     let name = model_name(suggested.model.id());
     let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-    let is_table = *origin == Origin::Table;
-    let mut made = if is_table { origin.with_model(false, Some(&suggested.model)) } else { origin.clone() };
-    if let Some(body) = made.body_mut().filter(|_| is_table) {
+    let deed = format!("Make it {article} {name}");
+    if *origin != Origin::Table {
+        return (deed, origin.clone());
+    }
+    let mut made = origin.with_model(false, Some(&suggested.model));
+    if let Some(body) = made.body_mut() {
         body.material = suggested.material;
     }
-    (format!("Make it {article} {name}"), made)
+    (deed, made)
 }
 
 /// Says that a kit's sounds have bodies of their own, and offers to edit the pad that is shown.

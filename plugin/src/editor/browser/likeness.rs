@@ -1,6 +1,6 @@
 //! Sounds like one: compares the presets of the catalogue with it by ear, in the background.
 
-use super::sounds::{Place, Sounds, place};
+use super::sounds::{Category, Place, Sounds, place};
 use super::tags::Tags;
 use crate::editor::background::{Background, Progress};
 use sprung::analysis::fit::{LOOKED_AT, Model, Nearness};
@@ -13,8 +13,8 @@ use std::sync::Arc;
 #[derive(Default)]
 pub(super) struct Likeness {
     pub(super) search: Option<Background<Vec<Place>>>,
-    /// The words and tags that one looked for when it began.
-    pub(super) asked: (String, Tags),
+    /// The category, words and tags in which one looked when it began.
+    pub(super) asked: Option<(Category, String, Tags)>,
     /// The name of the sound, and the presets that are most like it, the nearest first.
     pub(super) found: Option<(String, Vec<Place>)>,
 }

@@ -136,22 +136,19 @@ impl Browser {
         }
         let mut found = sounds.find(self.category, &self.words, self.likeness.places());
         self.tags.retain(&mut found);
-        self.tags.show(ui, tags, &found, palette);
         let mut says = String::new();
-        if found.is_empty() {
-            let invitation = self.category.invitation();
-            if !invitation.is_empty() && self.words.trim().is_empty() && self.tags.are_empty() {
-                says = invitation.to_owned();
-            } else {
-                found = sounds.find(Category::All, &self.words, &[]);
-                self.tags.retain(&mut found);
-                says = format!("None in {}. Elsewhere:", self.category.name());
-                if found.is_empty() {
-                    let (near, none) = sounds.nearest(&self.words, |_| true);
-                    (found, says) = (near, none.to_owned());
-                }
+        if found.is_empty() && self.words.trim().is_empty() && self.tags.are_empty() {
+            says = self.category.invitation().to_owned();
+        } else if found.is_empty() {
+            found = sounds.find(Category::All, &self.words, &[]);
+            self.tags.retain(&mut found);
+            says = format!("None in {}. Elsewhere:", self.category.name());
+            if found.is_empty() {
+                let (near, none) = sounds.nearest(&self.words, |_| true);
+                (found, says) = (near, none.to_owned());
             }
         }
+        self.tags.show(ui, tags, &found, palette);
         let chosen = match command {
             Command::Nothing => None,
             // While another field has the focus, the arrow keys belong to that field.
@@ -182,7 +179,7 @@ impl Browser {
         if outcome.as_ref().is_some_and(|outcome| outcome.compares)
             && let Playable::Preset(preset) = controls.params.state().playable
         {
-            self.likeness.asked = (self.words.clone(), self.tags.clone());
+            self.likeness.asked = Some((self.category, self.words.clone(), self.tags.clone()));
             message = self.likeness.start(preset, &sounds).err().map(Err).or(message);
         }
         let message = compared.map(Err).or(message);
@@ -225,7 +222,7 @@ impl Browser {
         match ended {
             Ok(places) => {
                 self.likeness.found = Some((name, places));
-                if self.likeness.asked == (self.words.clone(), self.tags.clone()) {
+                if self.likeness.asked == Some((self.category, self.words.clone(), self.tags.clone())) {
                     self.choose(Category::Like);
                 }
                 None

@@ -7,7 +7,7 @@ use nice_plug_core::context::gui::GuiContext;
 use sprung::preset::Playable;
 
 /// Loads a preset or kit, and tells the host the new knob positions. While the sound of a kit's pad is edited, a preset takes its place,
-/// and is put back on the pad.
+/// and can be put back on the pad.
 pub(crate) fn load(playable: Playable, params: &SprungParams, host: &GuiContext) {
     let State { seed, view, pad, .. } = params.state();
     let pad = pad.filter(|_| matches!(playable, Playable::Preset(_)));

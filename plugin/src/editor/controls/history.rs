@@ -62,8 +62,11 @@ impl History {
         let name = playable.name().to_owned();
         files::load(playable, params, host);
         self.chosen = Some(name.clone());
-        self.end_step(name, false, false, params);
-        self.is_changed = false;
+        // In the place of a pad's sound, it is a change of the kit, of which nothing is lost.
+        let is_changed = params.pad().is_some();
+        self.lost.take_if(|_| is_changed);
+        self.end_step(name, false, is_changed, params);
+        self.is_changed = is_changed;
     }
 
     /// Loads a sound that is in no file yet, as one step of this name.
@@ -75,7 +78,8 @@ impl History {
     }
 
     fn note_lost(&mut self, params: &SprungParams) {
-        self.lost = self.is_changed.then(|| params.name());
+        let kit = || params.pad().map(|pad| pad.kit.name.clone());
+        self.lost = self.is_changed.then(|| kit().unwrap_or_else(|| params.name()));
     }
 
     /// The name of the sound that was loaded since the last call.
@@ -102,7 +106,7 @@ impl History {
         self.is_changed = false;
     }
 
-    /// Whether the user has changed the sound in this window since it was loaded or saved.
+    /// Whether the user has changed the sound, or the kit whose pad is edited, since it was loaded or saved.
     pub(crate) fn is_changed(&self) -> bool {
         self.is_changed
     }

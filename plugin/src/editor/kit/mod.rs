@@ -19,7 +19,7 @@ use crate::editor::widgets::text::line;
 use crate::link::Link;
 use crate::loaded::Loaded;
 use detail::Detail;
-use edit::{FIRST, SECOND, change, copy, name_of, put, set, swap, take};
+use edit::{SECOND, change, copy, name_of, put, set, swap, take};
 use egui::{Align2, Rect, Ui, pos2, vec2};
 use pads::{Carried, Deed, Pads};
 use sounds::SoundList;
@@ -44,6 +44,8 @@ pub(super) struct KitPage {
     audition: Audition,
     /// The name of the kit; empty for a preset.
     name: String,
+    /// Whether a kit of the present sound was made, which is shown with the next pass.
+    is_made: bool,
     figures: Figures,
 }
 
@@ -105,8 +107,10 @@ impl KitPage {
             self.leave(controls);
             self.name = name;
             let keys = || shown.kit().into_iter().flat_map(|kit| kit.pads.iter().map(|(key, _)| *key));
-            let is_new = keys().eq([FIRST]) && self.pads.chosen() == SECOND;
-            if let Some(first) = keys().next().filter(|_| !is_new && keys().all(|key| key != self.pads.chosen())) {
+            if std::mem::take(&mut self.is_made) {
+                // A click on another sound puts that beside the first, and not in its place.
+                self.pads.choose(SECOND);
+            } else if let Some(first) = keys().next().filter(|_| keys().all(|key| key != self.pads.chosen())) {
                 self.pads.choose(first);
             }
         }
@@ -226,8 +230,7 @@ impl KitPage {
             controls.history.begin(controls.params);
             load(Playable::Kit(edit::kit_of(preset)), controls.params, controls.host);
             controls.history.end("a kit of this sound", controls.params);
-            // A click on another sound puts that beside it, and not in its place.
-            self.pads.choose(SECOND);
+            self.is_made = true;
             return None;
         }
         let help = Rect::from_min_size(pos2(head.right() - 22.0, head.top()), vec2(22.0, HEAD - 4.0));

@@ -66,9 +66,9 @@ impl Curve {
             Param::Envelope1Delay | Param::Envelope2Delay => {
                 curves::paint_envelope(ui.painter(), rect, &|row| values[row], whole, controls.palette);
                 let corners = of_envelope(rect, section, &values, whole);
-                // What is held for no time stands beside the peak, and belongs to it.
-                let leader = [corners[1].place, corners[2].place];
-                ui.painter().line_segment(leader, Stroke::new(1.5, controls.palette.accent));
+                // The handle of the hold is drawn beside the peak while the hold is 0: a line joins them.
+                let [_, peak, held, ..] = &corners[..] else { return };
+                ui.painter().line_segment([peak.place, held.place], Stroke::new(1.5, controls.palette.accent));
                 corners
             }
             Param::Lfo1Rate | Param::Lfo2Rate | Param::Lfo3Rate => {

@@ -34,7 +34,7 @@ pub(super) fn source_name(source: Source, guide: &Guide) -> String {
     name
 }
 
-/// The name of a route, such as `wheel › Vibrato`; what one does with an empty place.
+/// The name of a route, such as `wheel › Vibrato`; of an empty place, what a click on it does.
 pub(super) fn name(place: usize, routes: &Routes, guide: &Guide) -> String {
     let Some(Route { source, destination, scale, .. }) = routes.get(place) else {
         return "add a route".to_owned();

@@ -346,6 +346,8 @@ fn a_pad_that_shares_its_sound_is_edited_by_itself() {
     // Another sound that is loaded takes its place, also on the pad.
     stage.button("Next sound");
     let other = stage.params.name();
+    assert!(stage.paints(&format!("{other} *")), "the kit is not saved");
+    assert!(stage.harness.query_by_label_contains("was not saved").is_none(), "and it is not lost");
     stage.button("Put back");
     assert!(stage.kit().sounds.iter().any(|(_, sound)| sound.name == other));
     stage.button("Undo");

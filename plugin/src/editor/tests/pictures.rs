@@ -150,10 +150,13 @@ fn check_in_steps(name: &str, found: RgbaImage, step: u8) {
     }
     let accepted = image::open(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display())).into_rgba8();
     let differing = differing(&found, &accepted, step);
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../target/pictures");
+    let actual = folder.join(format!("{name}.png"));
+    // Not that of a former failure.
+    let _ = std::fs::remove_file(&actual);
     if differing > 0 {
-        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../target/pictures");
         std::fs::create_dir_all(&folder).unwrap();
-        found.save(folder.join(format!("{name}.png"))).unwrap();
+        found.save(actual).unwrap();
         panic!(
             "{name}: {differing} pixels, see target/pictures; `cargo xtask bless pictures` accepts the present pictures"
         );

@@ -102,7 +102,8 @@ impl Drop for Window {
             // end.
             let _ = catch_unwind(AssertUnwindSafe(end));
         }
-        self.history.cancel();
+        self.history.end("the last change", &self.params);
+        self.versions.rest();
         *lock(&self.past.0) = Some((take(&mut self.history), take(&mut self.versions), self.loads));
     }
 }

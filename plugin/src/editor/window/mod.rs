@@ -132,8 +132,10 @@ impl Window {
     pub(super) fn new(params: Arc<SprungParams>, library: Option<Library>, past: Past) -> Self {
         let shown = Shown::new(&params);
         let zoom = extent::factor(params.view());
-        let (history, versions, loads) =
-            lock(&past.0).take().unwrap_or_else(|| (History::default(), Versions::default(), params.loads()));
+        let (history, versions, loads) = lock(&past.0)
+            .take()
+            .filter(|(.., loads)| *loads == params.loads())
+            .unwrap_or_else(|| (History::default(), Versions::default(), params.loads()));
         Self {
             params,
             past,

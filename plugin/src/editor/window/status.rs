@@ -10,13 +10,12 @@ use std::time::Duration;
 
 /// How often the load is computed, in seconds.
 const INTERVAL: f64 = 0.5;
-/// Seconds for which the pointer rests before a hint is shown at it, and its distance from there.
+/// Seconds for which the pointer rests before a hint is shown at it, its distance from there, and its largest width.
 const REST: f32 = 0.7;
-const GAP: f32 = 14.0;
+const OFFSET: f32 = 14.0;
+const WIDEST: f32 = 300.0;
 /// Seconds for which it stays what was done.
 const STAYS: f64 = 8.0;
-/// The largest width of such a hint.
-const WIDEST: f32 = 300.0;
 /// Space between the title of a hint and its help.
 const TITLE_GAP: f32 = 10.0;
 
@@ -115,14 +114,18 @@ impl StatusLine {
     }
 }
 
-/// Shows a hint at the pointer, once that has rested.
+/// Shows a hint at the pointer, where it is looked for, once that has rested from moving, clicking and turning: it hides what is there.
 fn show_tooltip(ui: &Ui, Hint { title, help }: &Hint) {
-    let (rested, is_down) = ui.input(|input| (input.pointer.time_since_last_movement(), input.pointer.any_down()));
+    let (rested, is_down) = ui.input(|input| {
+        let pointer = &input.pointer;
+        let clicked = pointer.time_since_last_click().min(input.time_since_last_scroll());
+        (pointer.time_since_last_movement().min(clicked), pointer.any_down())
+    });
     if rested < REST {
         ui.ctx().request_repaint_after(Duration::from_secs_f32(REST - rested));
     } else if !is_down && !Popup::is_any_open(ui.ctx()) && !ui.ctx().egui_wants_keyboard_input() {
         let id = Id::unique("hint");
-        let tip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), id, PopupAnchor::Pointer).gap(GAP);
+        let tip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), id, PopupAnchor::Pointer).gap(OFFSET);
         tip.width(WIDEST).show(|ui| {
             ui.strong(title);
             if !help.is_empty() {

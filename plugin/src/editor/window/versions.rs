@@ -41,6 +41,11 @@ impl Versions {
         differ
     }
 
+    /// Lets go of what was only compared.
+    pub(super) fn rest(&mut self) {
+        self.compared = None;
+    }
+
     /// Makes the other one a copy of a version.
     pub(super) fn copy(&mut self, version: (State, bool)) {
         (self.other, self.compared) = (Some(version), None);

@@ -7,7 +7,7 @@ use crate::marks::{Colour, Mark};
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use std::f32::consts::PI;
 
-/// A position on a knob that only moves the value of each pad: what leaves that as it is points upwards.
+/// Where a position is drawn on a knob that only moves each pad's own value: the neutral position points upwards.
 pub(super) fn around(neutral: f32, position: f32) -> f32 {
     let side = if position < neutral { neutral } else { 1.0 - neutral };
     0.5 + 0.5 * (position - neutral) / side.max(1e-6)
@@ -95,4 +95,17 @@ pub(super) fn paint(painter: &Painter, rect: Rect, palette: &Palette, face: &Fac
     let colour: Color32 = palette.text;
     hand(face.position, radius * 0.22, Stroke::new(2.0, colour));
     paint_marks(painter, rect, &face.ring.marks, palette);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::around;
+
+    #[test]
+    fn the_neutral_position_is_in_the_middle_and_the_ends_stay_within() {
+        for (neutral, ends) in [(0.0, [0.5, 1.0]), (1.0, [0.0, 0.5]), (0.25, [0.0, 1.0])] {
+            assert_eq!([0.0, 1.0].map(|end| around(neutral, end)), ends, "{neutral}");
+            assert_eq!(around(neutral, neutral), 0.5);
+        }
+    }
 }

@@ -112,10 +112,11 @@ pub(crate) fn show(
     let neutral = info.normalise(info.default) as f32;
     let is_relative = controls.own(info).is_some();
     let shown = |position| if is_relative { face::around(neutral, position) } else { position };
+    let (position, offset) = (controls.position(info), controls.params.knobs()[info.param as usize].offset());
     let face = Face {
-        position: shown(controls.position(info)),
+        position: shown(position),
         origin: shown(neutral),
-        offset: controls.params.knobs()[info.param as usize].offset(),
+        offset: shown(position + offset) - shown(position),
         ring,
         is_hovered: turned.is_hovered,
         is_focused: turned.is_focused,
