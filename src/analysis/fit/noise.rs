@@ -74,10 +74,9 @@ fn swept(draft: &Draft, still: f64, take: &Prepared, most: usize, listener: &mut
         through_short_modes(&MelBands::new().measure(&samples), &samples, most, Draft { sweep, ..draft.clone() })
     };
     let mut found = draft.clone();
-    for (semitones, seconds) in SEMITONES.iter().flat_map(|semitones| SECONDS.map(|seconds| (*semitones, seconds))) {
-        let other = with(Sweep { semitones, seconds, curve: 0.0, ..Sweep::NONE });
-        listener.keep(&mut found, Judged::ByLevels, [other])?;
-    }
+    let coarse = SEMITONES.iter().flat_map(|semitones| SECONDS.map(|seconds| (*semitones, seconds)));
+    let coarse = coarse.map(|(semitones, seconds)| with(Sweep { semitones, seconds, curve: 0.0, ..Sweep::NONE }));
+    listener.keep(&mut found, Judged::ByLevels, coarse)?;
     if found.sweep.is_none() {
         return Ok(None);
     }

@@ -99,10 +99,9 @@ impl<'a> Listener<'a> {
     /// The distance of a draft that is judged so, and corrected before.
     fn judge(&mut self, draft: &mut Draft, by: Judged) -> Result<f64> {
         match by {
-            Judged::ByAttack | Judged::AsItIs => self.distance(draft, by.windows()),
             Judged::ByLevels => self.correct_levels(draft),
             Judged::ByModes if draft.noise.is_audible() => self.correct(draft, FEW_ROUNDS),
-            Judged::ByModes => self.distance(draft, by.windows()),
+            _ => self.distance(draft, by.windows()),
         }
     }
 
@@ -117,15 +116,16 @@ impl<'a> Listener<'a> {
         self.nearest(draft, least, by, others).map(drop)
     }
 
-    /// Changes a draft by steps of [`STEPS`] as long as it comes nearer: `near` gives the drafts that are a step from one.
+    /// Changes a draft by steps of [`STEPS`] as long as it comes nearer: `near` gives the drafts that are a step from one. Returns the
+    /// distance.
     pub(super) fn descend(
         &mut self,
         draft: &mut Draft,
         by: Judged,
         near: impl Fn(&Draft, f64) -> Vec<Draft>,
-    ) -> Result<()> {
+    ) -> Result<f64> {
         let least = self.distance(draft, by.windows())?;
-        STEPS.into_iter().try_fold(least, |least, step| self.nearest(draft, least, by, near(draft, step))).map(drop)
+        STEPS.into_iter().try_fold(least, |least, step| self.nearest(draft, least, by, near(draft, step)))
     }
 
     /// Replaces a draft at a distance by the nearest of `others`, if that is nearer. Returns the distance.

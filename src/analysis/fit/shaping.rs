@@ -86,7 +86,8 @@ impl Listener<'_> {
         self.descend(draft, Judged::ByAttack, |draft, step| {
             let beside = |hardness: f64| [-step, step].map(|by| (hardness + HARDER * by).clamp(0.0, 1.0));
             draft.hardness.into_iter().flat_map(beside).map(|hardness| with(draft, hardness)).collect()
-        })
+        })?;
+        Ok(())
     }
 
     /// Chooses the rise of a sound that is not struck, and its fall if it does not stay at its level.
@@ -104,7 +105,8 @@ impl Listener<'_> {
             let falls = FALLS.map(|fall| with(draft, Swell { fall: Some(fall), ..swell }));
             self.keep(draft, Judged::AsItIs, falls)?;
         }
-        self.descend(draft, Judged::AsItIs, swells)
+        self.descend(draft, Judged::AsItIs, swells)?;
+        Ok(())
     }
 
     /// Keeps the oscillators only if the sound is nearer with them, and changes the depths in which they move the level.
@@ -151,8 +153,7 @@ impl Listener<'_> {
         self.descend(draft, Judged::ByLevels, |draft, step| {
             let other = Draft { noise: otherwise(draft.noise), ..draft.clone() };
             noises(draft, step).into_iter().chain([other]).collect()
-        })?;
-        self.distance(draft, usize::MAX)
+        })
     }
 
     /// Changes length and rise of a noise that is heard as such, as long as the sound comes nearer.
