@@ -1,6 +1,7 @@
 //! The catalogue of sounds: those of the factory and the user's own.
 
 use super::library::Library;
+pub use super::traits::tagged_material;
 use super::traits::{traits, true_tags};
 use super::{Family, KitPreset, Playable, Preset};
 use crate::error::{Error, LEAST_SIMILARITY, similarity};

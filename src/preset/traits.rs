@@ -15,7 +15,7 @@ const DRIVERS: [(Param, &str); 3] =
 /// A burst of noise is part of most strikes: it counts where nothing else does.
 const BURST: (Param, &str) = (Param::NoiseLevel, "noise");
 
-/// Materials, and the tags of what is made of them.
+/// Materials, the usual one first, and the tags of what is made of them.
 const MATERIALS: [(&[&str], &str); 3] = [
     (&["rosewood", "maple", "spruce"], "wood"),
     (&["steel", "aluminium", "brass", "bronze", "wire", "snare_wire"], "metal"),
@@ -38,6 +38,11 @@ pub(super) fn true_tags(preset: &Preset, other: &Preset) -> Vec<String> {
         }
     }
     tags
+}
+
+/// The usual material, by its name, of what has one of the tags of materials.
+pub fn tagged_material(tags: &[String]) -> Option<&'static str> {
+    MATERIALS.iter().find(|(_, tag)| tags.iter().any(|own| own == tag)).map(|(ids, _)| ids[0])
 }
 
 /// The tag of what a preset's body is made of, if it has a body.

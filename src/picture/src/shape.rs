@@ -3,6 +3,7 @@
 use crate::figure::Figure;
 use crate::form::Form;
 use crate::origin::{Origin, model_name};
+use sprung::internals::library::tagged_material;
 use sprung::patch::ModeTable;
 use sprung::preset::Family;
 use sprung::sound::bodies::{Body, MATERIALS, Model, Point};
@@ -41,11 +42,9 @@ pub fn suggested_body(family: Option<Family>, tags: &[String]) -> Body {
         _ => "string",
     };
     let mut body = Body::new(Model::find(id).cloned().unwrap_or(Model::String));
-    let named = [("metal", "steel"), ("glass", "glass"), ("wood", "rosewood")]
-        .into_iter()
-        .find(|(tag, _)| tags.iter().any(|own| own == tag));
+    let named = tagged_material(tags);
     // Skins and strings are of their own, whatever holds them.
-    if let Some(material) = named.and_then(|(_, id)| MATERIALS.iter().find(|material| material.id == id))
+    if let Some(material) = named.and_then(|id| MATERIALS.iter().find(|material| material.id == id))
         && !["membrane", "string"].contains(&id)
     {
         body.material = *material;
