@@ -115,17 +115,10 @@ impl Things {
         next(2.0);
         // A table of modes has no material: to choose one is to make it the body as which it is drawn.
         let (deed, suggested) = suggestion(origin, shown);
-        if origin.body().is_some() {
-            line(ui.painter(), next(14.0), Align2::LEFT_CENTER, "What it is made of", SMALL, palette.muted);
-        } else {
-            line(
-                ui.painter(),
-                next(14.0),
-                Align2::LEFT_CENTER,
-                "Modes alone, of no material yet",
-                SMALL,
-                palette.muted,
-            );
+        let has_body = origin.body().is_some();
+        let title = if has_body { "What it is made of" } else { "Modes alone, of no material yet" };
+        line(ui.painter(), next(14.0), Align2::LEFT_CENTER, title, SMALL, palette.muted);
+        if !has_body {
             let response = button(ui, next(20.0), &deed, &deed, Look::Main, palette);
             if response.hovered() {
                 *controls.hint = Hint::new(&deed, "Of the material below that is clicked, or of the usual one.");
