@@ -213,14 +213,14 @@ fn a_full_disk_behind_stdout_is_an_error() {
 #[test]
 fn an_audition_plays_shows_and_measures_what_is_meant() {
     let sandbox = Sandbox::new();
-    sandbox.succeeds("presets audition --family snare --search brush --out page");
+    let audition = "presets audition --family kick --search wooden --out page";
+    sandbox.succeeds(audition);
     let page = String::from_utf8(sandbox.read("page/index.html")).unwrap();
-    assert!(page.contains("<h2>Brush Snare</h2>") && page.contains("attack flatness"), "{page}");
-    assert!(sandbox.read("page/brush-snare.wav").starts_with(b"RIFF"));
-    assert!(sandbox.read("page/brush-snare.png").starts_with(b"\x89PNG"));
-    let again = "presets audition --family snare --search brush --out page";
-    sandbox.fails(again, 1, "index.html: the file exists");
-    sandbox.succeeds(&format!("{again} --force"));
+    assert!(page.contains("<h2>Click Kick</h2>") && page.contains("attack flatness"), "{page}");
+    assert!(sandbox.read("page/click-kick.wav").starts_with(b"RIFF"));
+    assert!(sandbox.read("page/click-kick.png").starts_with(b"\x89PNG"));
+    sandbox.fails(audition, 1, "index.html: the file exists");
+    sandbox.succeeds(&format!("{audition} --force"));
     sandbox.fails("presets audition --search nothing-like-it --out none", 1, "no sound is meant");
 }
 

@@ -80,32 +80,32 @@ fn whatever_sounds_is_described_without_numbers_that_are_none() {
     let voice =
         |n: usize| libm::exp(30.0 * libm::sin(TAU * (120.0 + 1e-4 * n as f64) * n as f64 / 44_100.0) - 31.0) as f32;
     let strike = strike(0.5);
-    let sounds: [(&str, Vec<f32>, u16); 7] = [
-        ("noise", signals::noise(22_050), 1),
-        ("late", [vec![0.0; 9_000], strike.clone()].concat(), 1),
-        ("stereo", strike.iter().flat_map(|sample| [*sample, -0.5 * sample]).collect(), 2),
-        ("clipped", strike.iter().map(|sample| (4.0 * sample).clamp(-1.0, 1.0)).collect(), 1),
-        ("offset", strike.iter().map(|sample| 0.2 + sample).collect(), 1),
-        ("hum", strike.iter().enumerate().map(|(n, sample)| sample + hum(n)).collect(), 1),
-        ("voice", (0..22_050).map(voice).collect(), 1),
+    let sounds: [(&str, Vec<f32>, u16, &str); 7] = [
+        ("noise", signals::noise(11_025), 1, "explain little of it"),
+        ("late", [vec![0.0; 9_000], strike.clone()].concat(), 1, ""),
+        ("stereo", strike.iter().flat_map(|sample| [*sample, -0.5 * sample]).collect(), 2, ""),
+        (
+            "clipped",
+            strike.iter().map(|sample| (4.0 * sample).clamp(-1.0, 1.0)).collect(),
+            1,
+            "the sound is clipped in ",
+        ),
+        ("offset", strike.iter().map(|sample| 0.2 + sample).collect(), 1, ""),
+        ("hum", strike.iter().enumerate().map(|(n, sample)| sample + hum(n)).collect(), 1, "a tone of 50.0"),
+        ("voice", (0..11_025).map(voice).collect(), 1, ""),
     ];
-    for (name, samples, channels) in sounds {
+    for (name, samples, channels, warning) in sounds {
         sandbox.write(&format!("{name}.wav"), signals::wav(&samples, 44_100, channels));
         let json = sandbox.succeeds(&format!("analyze {name}.wav --modes 16 --hits --json"));
         assert!(is_json(&json), "{name}: {}", String::from_utf8_lossy(&json));
-        let printed = ["", "--csv"].map(|kind| sandbox.succeeds(&format!("analyze {name}.wav --modes 16 {kind}")));
-        for text in printed.map(|bytes| String::from_utf8(bytes).unwrap()) {
+        for kind in ["", "--csv"] {
+            let args = format!("analyze {name}.wav --modes 16 {kind}");
+            let output = sandbox.sprung(&args).assert().success().get_output().clone();
+            let [text, told] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
             assert!(!text.contains("NaN") && !text.contains("inf"), "{name}: {text}");
+            assert!(told.contains(warning), "{name}: {told}");
         }
     }
-    let warns = |name: &str, warning: &str| {
-        let output = sandbox.sprung(&format!("analyze {name}.wav --modes 16")).assert().success().get_output().clone();
-        let stderr = String::from_utf8(output.stderr).unwrap();
-        assert!(stderr.contains(warning), "{name}: {stderr}");
-    };
-    warns("noise", "explain little of it");
-    warns("clipped", "the sound is clipped in ");
-    warns("hum", "a tone of 50.0");
 }
 
 #[test]

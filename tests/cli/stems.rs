@@ -111,9 +111,9 @@ fn what_a_kit_s_effects_add_is_a_stem() {
 fn a_drum_is_heard_in_its_own_stem_only() {
     let sandbox = Sandbox::new();
     write_song(&sandbox);
-    sandbox.succeeds("render song.mid --bits 32f --stems stems");
+    sandbox.succeeds("render song.mid --tail 0.1 --bits 32f --stems stems");
     sandbox.write("kick.mid", song(&[note_on(0, 9, 36), note_on(340, 9, 36), end(250)]));
-    sandbox.succeeds("render kick.mid --bits 32f --stems alone");
+    sandbox.succeeds("render kick.mid --tail 0.1 --bits 32f --stems alone");
     let [stem, alone] = ["stems", "alone"].map(|folder| sandbox.wav(&format!("{folder}/10-036-kick.wav")));
     // The first strike has the same random numbers in both songs, up to the second.
     let same = stem.samples.iter().zip(&alone.samples).take(2 * 340 * 50).all(|(a, b)| (a - b).abs() < 1e-6);
@@ -124,8 +124,8 @@ fn a_drum_is_heard_in_its_own_stem_only() {
 fn stems_of_flac_have_the_same_samples() {
     let sandbox = Sandbox::new();
     write_song(&sandbox);
-    sandbox.succeeds("render song.mid --stems wav");
-    sandbox.succeeds("render song.mid --stems flac --format flac");
+    sandbox.succeeds("render song.mid --tail 0.1 --stems wav");
+    sandbox.succeeds("render song.mid --tail 0.1 --stems flac --format flac");
     for name in names(&sandbox, "wav") {
         let flac = fs::File::open(sandbox.path(&format!("flac/{}", name.replace(".wav", ".flac")))).unwrap();
         let flac = sprung::io::sound_file::read(flac, "flac").unwrap();
@@ -138,12 +138,12 @@ fn stems_of_flac_have_the_same_samples() {
 fn what_is_inaudible_after_the_gain_is_no_stem() {
     let sandbox = Sandbox::new();
     write_song(&sandbox);
-    sandbox.succeeds("render song.mid --bits 32f --stems stems");
+    sandbox.succeeds("render song.mid --tail 0.1 --bits 32f --stems stems");
     assert!(names(&sandbox, "stems").contains(&"space.wav".to_owned()));
-    sandbox.succeeds("render song.mid --bits 32f --gain-db -120 --stems soft");
+    sandbox.succeeds("render song.mid --tail 0.1 --bits 32f --gain-db -120 --stems soft");
     assert!(!names(&sandbox, "soft").contains(&"space.wav".to_owned()));
     // With --force, no file of an earlier run stays as it was.
-    sandbox.succeeds("render song.mid --bits 32f --gain-db -120 --stems stems --force");
+    sandbox.succeeds("render song.mid --tail 0.1 --bits 32f --gain-db -120 --stems stems --force");
     assert!(names(&sandbox, "stems").iter().all(|name| sandbox.wav(&format!("stems/{name}")).peak() < 1e-5));
 }
 
