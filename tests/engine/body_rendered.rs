@@ -156,7 +156,7 @@ fn partials(group: &[Line], key: u8) -> Vec<(String, Off)> {
 
 #[test]
 fn partials_of_some_rendered_notes_are_those_of_scipy() {
-    partials_agree(12);
+    partials_agree(18);
 }
 
 #[test]

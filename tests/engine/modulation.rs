@@ -401,6 +401,7 @@ fn every_quantity_can_be_moved_and_is_heard() {
         let sound = render(&patch, 0, &events, frames);
         (patch, sound)
     });
+    assert!(plain.iter().all(|(patch, sound)| sounds_as(sound, patch, &events)));
     let deaf = heard.filter(|info| {
         plain.iter().all(|(patch, sound)| {
             let mut moved = patch.clone();
