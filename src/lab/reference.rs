@@ -95,7 +95,7 @@ mod tests {
     fn chaos_has_no_reference() {
         let force = Force { amplitude: 60.0, frequency: 1.0, phase: 0.0 };
         let chaotic = System { force, spring: Spring::Pendulum, ..System::linear(1.0, 50.0, 0.5).unwrap() };
-        let message = states(&chaotic, State { x: 3.1, v: 0.0 }, 0.1, 2000).unwrap_err().to_string();
+        let message = states(&chaotic, State { x: 3.1, v: 0.0 }, 0.1, 1150).unwrap_err().to_string();
         assert!(message.starts_with("end:"), "{message}");
     }
 }

@@ -103,11 +103,27 @@ fn assert_none(breaches: &[String]) {
     assert!(breaches.is_empty(), "\n{}", breaches.join("\n"));
 }
 
+/// All rules in one test, since parsing takes most of its time.
 #[test]
-fn dependencies_point_one_way() {
-    let library = read("src/lib.rs");
-    assert!(library.len() > 80, "only {} modules were found", library.len());
-    assert_none(&rules::directions(&library, ALLOWED));
+fn dependencies_point_one_way_and_no_two_files_import_each_other() {
+    let mut breaches = rules::outside(&read("plugin/src/main.rs"), NOT_OF_THE_PLUGIN);
+    for root in CRATES {
+        let tree = read(root);
+        let round = |((one, other), [there, back]): ((PathBuf, PathBuf), [usize; 2])| {
+            format!("{}:{there} and {}:{back} import each other", one.display(), other.display())
+        };
+        breaches.extend(rules::circles(&tree).into_iter().map(round));
+        match *root {
+            "src/lib.rs" => {
+                assert!(tree.len() > 80, "only {} modules were found", tree.len());
+                breaches.extend(rules::directions(&tree, ALLOWED));
+                breaches.extend(rules::outside(&tree, OUTSIDE));
+            }
+            "plugin/src/lib.rs" => breaches.extend(rules::outside(&tree, NOT_OF_THE_PLUGIN)),
+            _ => {}
+        }
+    }
+    assert_none(&breaches);
     let round = ALLOWED.iter().filter(|(name, _)| rules::reaches(ALLOWED, name, name)).map(|(name, _)| *name);
     assert_eq!(round.collect::<Vec<_>>(), [""; 0], "the rows themselves go round");
 }
@@ -140,18 +156,6 @@ fn the_rows_do_not_go_against_the_document() {
 }
 
 #[test]
-fn outside_crates_stay_where_they_belong() {
-    assert_none(&rules::outside(&read("src/lib.rs"), OUTSIDE));
-}
-
-#[test]
-fn the_plugin_has_no_dsp() {
-    for root in ["plugin/src/lib.rs", "plugin/src/main.rs"] {
-        assert_none(&rules::outside(&read(root), NOT_OF_THE_PLUGIN));
-    }
-}
-
-#[test]
 fn the_plugin_builds_nothing_that_only_the_command_needs() {
     let manifest = |file: &str| -> toml::Table { fs::read_to_string(project().join(file)).unwrap().parse().unwrap() };
     let library = manifest("Cargo.toml");
@@ -163,15 +167,6 @@ fn the_plugin_builds_nothing_that_only_the_command_needs() {
     // The plugin reads and fits recordings that are dropped on its window.
     let features = used["features"].as_array().unwrap().iter().filter_map(toml::Value::as_str);
     assert_eq!(features.collect::<Vec<_>>(), ["fit"]);
-}
-
-#[test]
-fn no_two_files_import_each_other() {
-    let found = CRATES.iter().flat_map(|root| rules::circles(&read(root)));
-    let told = found.map(|((one, other), [there, back])| {
-        format!("{}:{there} and {}:{back} import each other", one.display(), other.display())
-    });
-    assert_none(&told.collect::<Vec<_>>());
 }
 
 /// Rust files in a folder, relative to the project.

@@ -25,14 +25,14 @@ pub(crate) fn directions(tree: &Tree, rows: &[Row]) -> Vec<String> {
         .filter(|name| row(name).is_none())
         .map(|name| format!("`{name}` has no row that says what it may use"))
         .collect();
-    for dependency in tree.dependencies() {
+    for dependency in &tree.dependencies {
         let On::Inside { named, .. } = &dependency.on else { continue };
         let (user, used) = (top(&dependency.module), top(named));
         let allowed = user == used || row(user).is_some_and(|allowed| allowed.contains(&used));
         // The crate's root declares all modules and uses nothing of them.
         let declares = dependency.module.is_empty() && dependency.is_export;
         if !allowed && !declares {
-            breaches.push(format!("{}: `{user}` uses `{used}`", place(&dependency)));
+            breaches.push(format!("{}: `{user}` uses `{used}`", place(dependency)));
         }
     }
     breaches
@@ -53,22 +53,22 @@ pub(crate) fn reaches(rows: &[Row], from: &str, to: &str) -> bool {
 
 /// Uses of other crates, or of parts of them, by root modules that no row names.
 pub(crate) fn outside(tree: &Tree, rows: &[Row]) -> Vec<String> {
-    let breach = |dependency: Dependency| {
+    let breach = |dependency: &Dependency| {
         let On::Outside(path) = &dependency.on else { return None };
         let is_of = |name: &str| path.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"));
         let (name, _) =
             rows.iter().find(|(name, allowed)| is_of(name) && !allowed.contains(&top(&dependency.module)))?;
-        Some(format!("{}: `{}` uses `{name}`", place(&dependency), top(&dependency.module)))
+        Some(format!("{}: `{}` uses `{name}`", place(dependency), top(&dependency.module)))
     };
-    tree.dependencies().into_iter().filter_map(breach).collect()
+    tree.dependencies.iter().filter_map(breach).collect()
 }
 
 /// Pairs of files that import each other, in alphabetical order, with a line number of each.
 pub(crate) fn circles(tree: &Tree) -> BTreeMap<(PathBuf, PathBuf), [usize; 2]> {
     let mut uses = BTreeMap::new();
-    for dependency in tree.dependencies().into_iter().filter(|dependency| !dependency.is_export) {
-        if let On::Inside { file, .. } = dependency.on {
-            uses.entry((dependency.file, file)).or_insert(dependency.line);
+    for dependency in tree.dependencies.iter().filter(|dependency| !dependency.is_export) {
+        if let On::Inside { file, .. } = &dependency.on {
+            uses.entry((dependency.file.clone(), file.clone())).or_insert(dependency.line);
         }
     }
     let pairs = uses.iter().filter(|((from, to), _)| from < to);

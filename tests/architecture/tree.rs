@@ -11,6 +11,8 @@ const DEPTH: usize = 16;
 #[derive(Debug, Default)]
 pub(crate) struct Tree {
     modules: BTreeMap<Vec<String>, (PathBuf, Module)>,
+    /// All uses of other files and other crates.
+    pub(crate) dependencies: Vec<Dependency>,
 }
 
 /// A use of another file, or of another crate, by a file.
@@ -60,6 +62,7 @@ impl Tree {
     pub(crate) fn read(root: &Path, source: &dyn Fn(&Path) -> Option<String>) -> Result<Self, String> {
         let mut tree = Self::default();
         tree.read_file(&[], root, root.parent().unwrap_or(Path::new("")), source)?;
+        tree.dependencies = tree.found_dependencies();
         Ok(tree)
     }
 
@@ -100,8 +103,7 @@ impl Tree {
         self.modules.keys().map(Vec::as_slice)
     }
 
-    /// All uses of other files and other crates.
-    pub(crate) fn dependencies(&self) -> Vec<Dependency> {
+    fn found_dependencies(&self) -> Vec<Dependency> {
         let mut all = Vec::new();
         for (file, module) in self.modules.values() {
             let imports = module.imports.iter().map(|import| (&import.named, import.is_export));

@@ -16,7 +16,7 @@ const FREQUENCIES: [f64; 12] =
 const T60S: [f64; 4] = [0.05, 0.3, 2.0, 20.0];
 /// Longest measured stretch, in seconds. Even for a T60 of 20 s this resolves far less than 0.1 %, because the fit
 /// averages the rounding errors of all samples.
-const LONGEST: f64 = 4.0;
+const LONGEST: f64 = 0.5;
 
 /// Strikes one mass once, renders it to a WAV file, and measures it without prior knowledge of the result.
 fn measure(folder: &Path, sample_rate: u32, frequency: f64, t60: f64) -> Option<DampedSine> {

@@ -6,7 +6,7 @@ use sprung::params::Param;
 use sprung::patch::{Mode, ModeTable, Patch};
 
 const RATE: f64 = 48_000.0;
-const FRAMES: usize = 24_000;
+const FRAMES: usize = 12_000;
 /// −60 dBFS, the allowed increase.
 const ALLOWANCE: f32 = 0.001;
 
@@ -76,10 +76,17 @@ fn check_against<const N: usize>(
     for (name, patch) in patches() {
         let free = patch.clone().with(Param::Voices, 16.0);
         let programs = [program()];
+        // Most undisturbed sounds are the same at every time.
+        let mut before = (None, 0.0);
         for key in [28, 40, 60, 84] {
-            for moment in [4800, 4811, 4907, 5003, 5151] {
-                let sounds = undisturbed(key, moment);
-                let before = sounds.iter().map(|events| largest_jump(&free, &programs, events)).fold(0.0, f32::max);
+            for moment in [4800, 4907, 5151] {
+                let sounds = Some(undisturbed(key, moment));
+                if before.0 != sounds {
+                    let jumps = sounds.iter().flatten().map(|events| largest_jump(&free, &programs, events));
+                    let most = jumps.fold(0.0, f32::max);
+                    before = (sounds, most);
+                }
+                let before = before.1;
                 let after = largest_jump(&change(patch.clone()), &programs, &disturbed(key, moment));
                 assert!(
                     after <= before + ALLOWANCE,
@@ -177,14 +184,12 @@ fn a_note_of_another_preset_does_not_click() {
     let program = |frame| event(frame, EventKind::Program(0));
     let other = |event| Event { channel: 1, ..event };
     // Next to the sounding note, on the same key, and replacing it if there is only one voice.
-    for (interval, voices) in [(7, 16.0), (0, 16.0), (7, 1.0), (0, 1.0)] {
-        for later in [0, 37] {
-            check(
-                |patch| patch.with(Param::Voices, voices),
-                |key, moment| vec![on(0, key), other(program(0)), other(on(moment + later, key + interval))],
-                |key, moment| vec![on(0, key), program(moment), on(moment + later, key + interval)],
-            );
-        }
+    for (interval, voices, later) in [(7, 16.0, 0), (0, 16.0, 37), (7, 1.0, 37), (0, 1.0, 0)] {
+        check(
+            |patch| patch.with(Param::Voices, voices),
+            |key, moment| vec![on(0, key), other(program(0)), other(on(moment + later, key + interval))],
+            |key, moment| vec![on(0, key), program(moment), on(moment + later, key + interval)],
+        );
     }
 }
 

@@ -320,7 +320,7 @@ fn is_moving(patch: &Patch) -> bool {
 
 #[test]
 fn some_tails_are_told_exactly() {
-    tails(8);
+    tails(16);
 }
 
 #[test]

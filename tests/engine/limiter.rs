@@ -92,7 +92,7 @@ fn burst(seed: u64) -> Stereo {
 
 #[test]
 fn a_true_peak_below_the_threshold_passes_bit_for_bit() {
-    for rate in RATES {
+    for rate in RATES.into_iter().skip(1).step_by(2) {
         let bursts = (0..4).map(|seed| (format!("burst {seed}"), burst(seed)));
         for (name, signal) in adversaries().into_iter().chain(bursts) {
             let signal = scaled(&signal, gain_from_db(TRANSPARENT - 0.001 - true_peak(rate, &signal)));
@@ -106,7 +106,7 @@ fn a_true_peak_below_the_threshold_passes_bit_for_bit() {
 #[test]
 fn a_true_peak_above_it_is_brought_down() {
     let mut high = Vec::new();
-    for rate in RATES {
+    for rate in RATES.into_iter().step_by(2) {
         for (name, signal) in adversaries() {
             // A full-scale sine at a quarter of the sample rate can have all of its samples below the threshold.
             for (gain_db, highest) in [(0.0, -0.2), (3.0, HIGHEST), (20.0, HIGHEST)] {
@@ -195,20 +195,20 @@ fn play(rate: u32, patch: &Patch, events: &[Event], seconds: f64) -> Stereo {
 
 #[test]
 fn a_chord_of_some_presets_stays_below_full_scale() {
-    chords(8);
+    chords(8, |index| &RATES[index % RATES.len()..][..1]);
 }
 
 #[test]
 #[ignore = "takes minutes"]
 fn a_chord_of_any_preset_stays_below_full_scale() {
-    chords(1);
+    chords(1, |_| &RATES);
 }
 
-/// Chords of every so many presets.
-fn chords(step: usize) {
+/// Chords of every so many presets, each at these rates.
+fn chords(step: usize, rates: impl Fn(usize) -> &'static [u32]) {
     let mut loud = 0;
-    for preset in Preset::factory().iter().step_by(step) {
-        for rate in RATES {
+    for (index, preset) in Preset::factory().iter().step_by(step).enumerate() {
+        for &rate in rates(index) {
             let peak = true_peak(rate, &play(rate, &preset.patch, &chord(1.0), 0.6));
             assert!(peak <= HIGHEST_OF_NOISE, "{} at {rate} Hz: {peak:.2} dBFS", preset.name);
         }
@@ -220,7 +220,7 @@ fn chords(step: usize) {
 
 #[test]
 fn a_rendered_chord_of_some_presets_stays_below_full_scale_and_tells_how_much_was_lowered() {
-    rendered_chords(8);
+    rendered_chords(16);
 }
 
 #[test]
@@ -265,12 +265,10 @@ fn rendered_chords(step: usize) {
 fn sixty_four_voices_at_once_stay_below_full_scale() {
     for name in ["init", "Church Bell", "Snare", "Open Hat", "Triangle", "Sub Bass", "Gong"] {
         let patch = Preset::find(name).unwrap().patch.clone().with(Param::Voices, 64.0).with(Param::Gain, 12.0);
-        for spread in [0, 37] {
+        for (spread, rate) in [(0, 48_000), (37, 22_050), (37, 96_000)] {
             let events: Vec<Event> = (0..64).map(|n| Event::note_on(n * spread, 32 + n as u8, 1.0)).collect();
-            for rate in [22_050, 48_000, 96_000] {
-                let peak = true_peak(rate, &play(rate, &patch, &events, 0.5));
-                assert!(peak <= HIGHEST, "{name} at {rate} Hz: {peak:.2} dBFS");
-            }
+            let peak = true_peak(rate, &play(rate, &patch, &events, 0.3));
+            assert!(peak <= HIGHEST, "{name} at {rate} Hz: {peak:.2} dBFS");
         }
     }
 }

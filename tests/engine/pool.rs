@@ -69,12 +69,10 @@ fn an_exhausted_pool_gives_the_same_bits_however_frames_are_divided() {
         let differs = whole.iter().zip(&parts).position(|(one, other)| one != other);
         assert_eq!(differs.map(|at| at % FRAMES), None, "blocks of {block}");
     };
-    for block in [1, 7, 64] {
+    for block in [1, 64] {
         compare(block, render(&mut ensemble(), &events, block, &Backwards));
     }
-    for block in [480, 4096] {
-        compare(block, render(&mut ensemble(), &events, block, &TwoThreads));
-    }
+    compare(480, render(&mut ensemble(), &events, 480, &TwoThreads));
 }
 
 /// Fewer notes sound than were struck, and those that sound are not the quietest.

@@ -8,30 +8,23 @@ use sprung::units::key_from_frequency;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::OnceLock;
 
 /// Sample rate, frequency, decay in frames, amplitude, frames, sweep.
 type Case = (f32, f32, f32, f32, usize, f32);
 
-/// The listing as a program, compiled beside its place and then moved there: tests in other processes may run the one that is there,
-/// and a file cannot be written while it runs.
-fn program() -> &'static Path {
-    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    PROGRAM.get_or_init(|| {
-        let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("harmonic_oscillator");
-        let new = program.with_extension(std::process::id().to_string());
-        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/engine/seed/harmonic_oscillator.cpp");
-        // No fused multiplication: the listing's operations are done one by one, as on the machines of its time.
-        let compiler = Command::new("c++").args(["-O2", "-ffp-contract=off", source, "-o"]).arg(&new).status();
-        assert!(compiler.expect("c++, which `cargo xtask setup` installs").success(), "the listing does not compile");
-        std::fs::rename(&new, &program).unwrap();
-        program
-    })
+/// Compiles the listing as a program.
+fn program(folder: &Path) -> PathBuf {
+    let program = folder.join("harmonic_oscillator");
+    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/engine/seed/harmonic_oscillator.cpp");
+    // No fused multiplication: the listing's operations are done one by one, as on the machines of its time.
+    let compiler = Command::new("c++").args(["-O2", "-ffp-contract=off", source, "-o"]).arg(&program).status();
+    assert!(compiler.expect("c++, which `cargo xtask setup` installs").success(), "the listing does not compile");
+    program
 }
 
 /// The results of the listing for the cases.
-fn listing(cases: &[Case]) -> Vec<f32> {
-    let mut child = Command::new(program()).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+fn listing(program: &Path, cases: &[Case]) -> Vec<f32> {
+    let mut child = Command::new(program).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
     let mut input = child.stdin.take().unwrap();
     let lines: String = cases
         .iter()
@@ -61,10 +54,18 @@ fn cases() -> Vec<Case> {
         .collect()
 }
 
+/// One test for both, since the compiler takes most of its time.
 #[test]
-fn the_classic_oscillator_is_the_listing_to_the_bit() {
+fn the_classic_oscillator_and_the_synth_s_classic_sound_are_the_listing_to_the_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = program(folder.path());
+    the_oscillator_is_the_listing(&program);
+    the_synth_is_the_listing(&program);
+}
+
+fn the_oscillator_is_the_listing(program: &Path) {
     let cases = cases();
-    let mut expected = listing(&cases).into_iter();
+    let mut expected = listing(program, &cases).into_iter();
     for (rate, frequency, decay, amplitude, frames, sweep) in cases {
         let mut mass = HarmonicOscillator::<f32>::new(&Coefficients::seed(frequency, decay, amplitude, rate));
         for n in 0..frames {
@@ -80,11 +81,10 @@ fn the_classic_oscillator_is_the_listing_to_the_bit() {
     assert_eq!(expected.next(), None);
 }
 
-#[test]
-fn the_classic_sound_of_the_synth_is_the_listing_to_the_bit() {
+fn the_synth_is_the_listing(program: &Path) {
     let settings = [(440.0, 1.0), (55.0, 0.25), (4000.0, 3.0)];
     let cases = settings.map(|(frequency, t60)| (48_000.0, frequency, t60 * 48_000.0, 1.0, 9600, 1.0));
-    let expected = listing(&cases);
+    let expected = listing(program, &cases);
     for ((frequency, t60), expected) in settings.into_iter().zip(expected.chunks(9600)) {
         let mut synth = Synth::new(48_000.0, 0);
         let patch = Patch::default()

@@ -4,7 +4,9 @@ use crate::score::Score;
 use sprung::io::Song;
 use sprung::patch::Patch;
 use sprung::preset::Programs;
+use sprung::sound::Kit;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Seconds rendered after a song's last event.
 const TAIL: f64 = 1.0;
@@ -17,7 +19,8 @@ pub(crate) fn all() -> Vec<Score> {
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "mid"));
     paths.sort();
     assert!(!paths.is_empty(), "there are songs in {}", folder.display());
-    paths.iter().map(|path| song(path)).collect()
+    let kits = Programs::factory_kits();
+    paths.iter().map(|path| song(path, &kits)).collect()
 }
 
 /// Whether a case is a song that takes a good part of a minute.
@@ -25,14 +28,13 @@ pub(crate) fn is_long(case: &Score) -> bool {
     ["song-kits", "song-suite"].contains(&case.name.as_str())
 }
 
-fn song(path: &Path) -> Score {
+fn song(path: &Path, kits: &[Arc<Kit>]) -> Score {
     let stem = path.file_stem().and_then(|stem| stem.to_str()).expect("songs have plain names");
     let bytes = std::fs::read(path).expect("a song can be read");
     let mut song = Song::parse(&bytes, stem).unwrap_or_else(|error| panic!("{error}"));
     song.select_by_bank();
     let score = Score::new(format!("song-{stem}"), Patch::default(), song.seconds + TAIL);
     // Only one block size: a plate is slow, and `tests/engine/blocks.rs` plays blocks of all sizes.
-    let score =
-        score.in_blocks(&[480]).with_kits(Programs::factory_kits()).with_mix(Programs::general_midi().mix.clone());
+    let score = score.in_blocks(&[480]).with_kits(kits.to_vec()).with_mix(Programs::general_midi().mix.clone());
     song.events.iter().fold(score, |score, event| score.then(event.seconds, event.channel, event.kind))
 }

@@ -16,7 +16,6 @@ use sprung::sound::pairs::{Link, Pair};
 use sprung::sound::{KEYS, Kit, Pad, Sound};
 use std::sync::{Arc, Mutex};
 
-const FRAMES: usize = 24_000;
 /// Every preset must exceed this peak, because the bits of silence prove nothing.
 const AUDIBLE: f64 = 0.01;
 
@@ -26,15 +25,16 @@ type Stereo = [Vec<f32>; 2];
 /// The level applies to the whole process, so only one test runs at a time.
 static LEVEL: Mutex<()> = Mutex::new(());
 
-/// How many cases are compared: one of so many factory presets, random patches, random kits. Emulated levels are slow.
+/// How many cases are compared: one of so many factory presets, random patches, random kits; and their frames. Emulated levels are slow.
 struct Extent {
     step: usize,
     patches: u64,
     kits: u64,
+    frames: usize,
 }
 
-const FEW: Extent = Extent { step: 48, patches: 9, kits: 1 };
-const MANY: Extent = Extent { step: 6, patches: 40, kits: 8 };
+const FEW: Extent = Extent { step: 48, patches: 9, kits: 1, frames: 6_000 };
+const MANY: Extent = Extent { step: 6, patches: 40, kits: 8, frames: 24_000 };
 
 /// A kit and the events that it plays, with a name for failure messages.
 struct Case {
@@ -42,29 +42,32 @@ struct Case {
     seed: u64,
     kit: Arc<Kit>,
     events: Vec<Event>,
+    frames: usize,
 }
 
 impl Case {
     /// Factory presets, random patches and random kits, each with random events.
     fn all(extent: &Extent) -> Vec<Case> {
+        let frames = extent.frames;
         let preset = |(seed, preset): (u64, &Preset)| Case {
             name: format!("preset ‘{}’", preset.name),
             seed,
             kit: Kit::of_patch(&preset.patch),
-            events: events(&mut Stream::new(seed)),
+            events: events(&mut Stream::new(seed), frames),
+            frames,
         };
         let factory: Vec<&Preset> = Preset::factory().iter().step_by(extent.step).collect();
         let first_random = factory.len() as u64;
         let random = |seed| {
             let mut stream = Stream::new(seed);
             let kit = Kit::of_patch(&patch(&mut stream, seed));
-            Case { name: format!("random seed {seed}"), seed, kit, events: events(&mut stream) }
+            Case { name: format!("random seed {seed}"), seed, kit, events: events(&mut stream, frames), frames }
         };
         let first_kit = first_random + extent.patches;
         let kit = |seed| {
             let mut stream = Stream::new(seed);
             let kit = kit(&mut stream, seed);
-            Case { name: format!("kit seed {seed}"), seed, kit, events: events(&mut stream) }
+            Case { name: format!("kit seed {seed}"), seed, kit, events: events(&mut stream, frames), frames }
         };
         (0..)
             .zip(factory)
@@ -76,7 +79,7 @@ impl Case {
 
     fn render(&self) -> Stereo {
         let mut ensemble = Ensemble::of_kits(48_000.0, self.seed, &self.kit, vec![]);
-        let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
+        let (mut left, mut right) = (vec![0.0; self.frames], vec![0.0; self.frames]);
         ensemble.process(&self.events, &mut left, &mut right);
         [left, right]
     }
@@ -176,10 +179,10 @@ fn kit(stream: &mut Stream, seed: u64) -> Arc<Kit> {
 }
 
 /// Notes, releases, bends, pressure and parameters: many at first, then few, so that notes also ring undisturbed.
-fn events(stream: &mut Stream) -> Vec<Event> {
+fn events(stream: &mut Stream, frames: usize) -> Vec<Event> {
     let mut events: Vec<Event> = (0..60)
         .map(|_| {
-            let frame = (stream.next() * stream.next() * FRAMES as f64) as u32;
+            let frame = (stream.next() * stream.next() * frames as f64) as u32;
             let (key, value) = (36 + (stream.next() * 48.0) as u8, stream.next() as f32);
             let kind = match (stream.next() * 10.0) as u8 {
                 0..=4 => EventKind::NoteOn { key, detune: value, velocity: value, id: None },

@@ -10,8 +10,17 @@ use crate::sound::Kit;
 
 const OPTIONS: Options = Options { sample_rate: 48_000, seed: 0, block: 256, tail: Tail::None };
 
-/// The labels of a song. Reading them changes no sample.
+/// The labels of a song.
 fn of(song: &Song, patch: &Patch) -> Vec<NoteLabel> {
+    let kit = Kit::of_patch(patch);
+    let job = Job::new(song, &kit, OPTIONS);
+    let mut labels = Labels::new(&job);
+    job.render_labelled(Some(&mut labels), |_, _| Ok(())).unwrap();
+    labels.finish()
+}
+
+/// Reading labels changes no sample.
+fn assert_unheard(song: &Song, patch: &Patch) {
     let kit = Kit::of_patch(patch);
     let job = Job::new(song, &kit, OPTIONS);
     let render = |labels: Option<&mut Labels>| {
@@ -23,13 +32,12 @@ fn of(song: &Song, patch: &Patch) -> Vec<NoteLabel> {
         job.render_labelled(labels, sink).unwrap();
         samples
     };
-    let mut labels = Labels::new(&job);
-    assert!(render(Some(&mut labels)) == render(None));
-    labels.finish()
+    assert!(render(Some(&mut Labels::new(&job))) == render(None));
 }
 
 fn labels(patch: &Patch, keys: &[f64]) -> Vec<NoteLabel> {
     let song = Song::chord(keys, 1.0, 1.0);
+    assert_unheard(&song, patch);
     of(&song, patch)
 }
 
@@ -144,6 +152,7 @@ fn strikes_of_one_key_have_a_label_each_with_what_each_has_added() {
     // All voices with one phase: at a further strike, its phases hold for what is left of the earlier one too.
     let unison = struck_slowly().with(Param::Unison, 3.0).with(Param::UnisonPhase, 0.0);
     for (patch, voices) in [(impulse, 1), (struck_slowly(), 1), (classic, 1), (unison, 3)] {
+        assert_unheard(&strikes(&while_it_acts), &patch);
         for notes in [&two[..], &while_it_acts, &while_it_rings, &without_force] {
             assert_as_alone(&patch, notes, voices);
         }

@@ -49,8 +49,8 @@ fn are_heard(presets: Vec<&Preset>) {
 }
 
 #[test]
-fn macros_and_wheel_of_every_eighth_preset_are_heard() {
-    are_heard(whole_bank().into_iter().step_by(8).collect());
+fn macros_and_wheel_of_every_sixteenth_preset_are_heard() {
+    are_heard(whole_bank().into_iter().step_by(16).collect());
 }
 
 #[test]

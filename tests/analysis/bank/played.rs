@@ -3,7 +3,9 @@
 use sprung::engine::{Event, Synth};
 use sprung::internals::measures::spectrum::{Spectrum, peaks, spectrum};
 use sprung::preset::Preset;
+use sprung::sound::Kit;
 use sprung::units::mono_from_stereo;
+use std::sync::Arc;
 
 pub(crate) const RATE: f64 = 48_000.0;
 
@@ -18,8 +20,13 @@ pub(crate) fn event(seconds: f64, key: u8, velocity: Option<f32>) -> Event {
 
 /// The mean of both channels of a note struck with `velocity`, 1–127, and held for `held` seconds.
 pub(crate) fn note(preset: &Preset, key: u8, velocity: f32, held: f64, seconds: f64) -> Vec<f32> {
+    note_of(&preset.kit(), key, velocity, held, seconds)
+}
+
+/// The same of a kit, which takes a while to make if it is blown.
+pub(crate) fn note_of(kit: &Arc<Kit>, key: u8, velocity: f32, held: f64, seconds: f64) -> Vec<f32> {
     let mut synth = Synth::new(RATE, 1);
-    synth.set_kit(&preset.kit());
+    synth.set_kit(kit);
     synth.reset();
     let [mut left, mut right] = [0, 1].map(|_| vec![0.0; (seconds * RATE) as usize]);
     let events = [event(0.0, key, Some(velocity)), event(held, key, None)];

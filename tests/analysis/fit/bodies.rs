@@ -16,7 +16,7 @@ const STRUCK: [(&str, u8, f64, f32, f64); 3] =
 /// Level in dB, relative to the loudest mode, above which modes are compared.
 const HEARD_DB: f64 = -40.0;
 /// Seconds that are fitted.
-const SECONDS: f64 = 1.0;
+const SECONDS: f64 = 0.6;
 
 fn sound(model: &str, key: u8, x: f64, hardness: f32) -> Outcome<Stereo> {
     let (_, model) = Model::ALL.iter().find(|(id, _)| *id == model).ok_or("no such model")?;

@@ -25,7 +25,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Numbers of random cases, always the same ones.
-const FEW: u64 = 1_000;
+const FEW: u64 = 500;
 const MANY: u64 = 100_000;
 const SEED: u64 = 10;
 /// Maximum number of failing cases that are made smaller and printed.

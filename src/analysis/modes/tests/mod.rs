@@ -14,7 +14,7 @@ use sprung_fourier::Complex;
 const RATE: f64 = 48_000.0;
 /// Number of modes of a strike, and numbers of strikes in noise at every commit and in tests that take minutes.
 const MODES: usize = 60;
-const FEW: u64 = 2;
+const FEW: u64 = 1;
 const MANY: u64 = 20;
 
 /// A mode that is put into a sound: frequency, T60, amplitude, phase of a sine.
@@ -127,14 +127,14 @@ fn clean_strikes(count: usize, seeds: std::ops::RangeInclusive<u64>) {
 }
 
 #[test]
-fn the_modes_of_clean_strikes_are_exact() {
-    clean_strikes(MODES, 1..=1);
+fn the_modes_of_a_clean_strike_are_exact() {
+    clean_strikes(24, 1..=1);
 }
 
 #[test]
 #[ignore = "takes minutes"]
 fn the_modes_of_many_clean_strikes_are_exact() {
-    clean_strikes(MODES, 2..=MANY);
+    clean_strikes(MODES, 1..=MANY);
 }
 
 /// Height of the highest noise peak in two seconds, as energy over the power density of the noise, in dB: `2 ln n` for

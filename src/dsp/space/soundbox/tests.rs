@@ -27,10 +27,10 @@ fn response(soundbox: &mut Soundbox, frames: usize) -> [Vec<f32>; 2] {
 
 /// Gain of a lasting sine, from the response to an impulse.
 fn gain(response: &[f32], frequency: f64, sample_rate: f64) -> f64 {
-    let turn = |n: usize| TAU * frequency / sample_rate * n as f64;
-    let sum =
-        |part: fn(f64) -> f64| response.iter().enumerate().map(|(n, y)| f64::from(*y) * part(turn(n))).sum::<f64>();
-    libm::hypot(sum(libm::cos), sum(libm::sin))
+    let (sin, cos) = libm::sincos(TAU * frequency / sample_rate);
+    let turned = |(re, im), y: &f32| (re * cos - im * sin + f64::from(*y), re * sin + im * cos);
+    let (re, im) = response.iter().rev().fold((0.0, 0.0), turned);
+    libm::hypot(re, im)
 }
 
 #[test]
