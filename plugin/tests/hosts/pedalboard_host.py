@@ -9,9 +9,9 @@ import pedalboard._pedalboard
 from pedalboard import AudioProcessorParameter, VST3Plugin
 
 
-def load(plugin, preset=None, name="Sprung", tried=10):
-    # Of each parameter it tries out a thousand values when a plugin is loaded: only where that is what is tested.
-    AudioProcessorParameter.__init__.__defaults__ = (tried,)
+def load(plugin, preset=None, name="Sprung"):
+    # It would try out a thousand values of each parameter when a plugin is loaded.
+    AudioProcessorParameter.__init__.__defaults__ = (1,)
     # It would try out thousands of values of each of the 2,080 parameters that stand for MIDI controllers.
     pedalboard._pedalboard.PARAMETER_NAME_REGEXES_TO_IGNORE.add(re.compile(r"^MIDI Ch\. "))
     synth = VST3Plugin(plugin, plugin_name=name)
@@ -47,7 +47,7 @@ def effect(plugin, name, settings, incoming, sample_rate, block, audio):
 
 def parameters(plugin, positions):
     """Sets each parameter to each position: name, and (position, value, text) of each."""
-    synth = load(plugin, tried=1000)
+    synth = load(plugin)
     rows = []
     for parameter in synth.parameters.values():
         tried = []
