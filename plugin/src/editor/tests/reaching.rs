@@ -29,7 +29,7 @@ impl Stage {
         self.harness.run_steps(2);
         for _ in 0..300 {
             self.harness.key_press_modifiers(modifiers, Key::Tab);
-            self.harness.run_steps(2);
+            self.harness.step();
             if self.seen(role, within, true).iter().any(|now| !before.contains(now)) {
                 return;
             }
