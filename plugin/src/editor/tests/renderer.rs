@@ -36,10 +36,10 @@ impl Texture {
         }
     }
 
-    fn pixel(&self, x: f32, y: f32) -> [f32; 4] {
+    fn pixel(&self, x: f32, y: f32) -> Color32 {
         let [width, height] = self.size;
         let (x, y) = ((x.max(0.0) as usize).min(width - 1), (y.max(0.0) as usize).min(height - 1));
-        self.pixels[y * width + x].to_array().map(f32::from)
+        self.pixels[y * width + x]
     }
 
     /// The colour at a point with coordinates from 0 to 1, interpolated between the four nearest pixels.
@@ -47,8 +47,11 @@ impl Texture {
         let (x, y) = (u * self.size[0] as f32 - 0.5, v * self.size[1] as f32 - 0.5);
         let (left, top) = (x.floor(), y.floor());
         let (right, below) = (x - left, y - top);
-        let [a, b, c, d] =
-            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|[dx, dy]| self.pixel(left + dx, top + dy));
+        let four = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|[dx, dy]| self.pixel(left + dx, top + dy));
+        let [a, b, c, d] = four.map(|pixel| pixel.to_array().map(f32::from));
+        if four == [four[0]; 4] {
+            return a;
+        }
         from_fn(|i| {
             (a[i] * (1.0 - right) + b[i] * right) * (1.0 - below) + (c[i] * (1.0 - right) + d[i] * right) * below
         })
