@@ -254,7 +254,7 @@ fn states_of_all_versions_load() {
 
 proptest! {
     // Each case has a position for every parameter.
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(16))]
     #[test]
     fn knobs_come_back_to_where_they_stood(
         positions in proptest::collection::vec(0.0..=1.0f32, PARAM_COUNT),

@@ -1,7 +1,7 @@
 //! Parameter changes take effect at their frames, with the same bits as in the engine.
 
 use crate::host::reference::{At, assert_same_bits, render};
-use crate::host::{Address, Instance, Rendered, Sent, Timed};
+use crate::host::{Address, Instance, Player, Sent, Timed};
 use crate::parameters::host_value;
 use crate::patches::load;
 use sprung::engine::{EventKind, NoteId};
@@ -9,7 +9,7 @@ use sprung::params::{PARAMS, Param};
 use sprung::patch::Patch;
 
 const RATE: f64 = 48_000.0;
-const FRAMES: usize = 9_600;
+const FRAMES: usize = 6_400;
 
 /// Block sizes that put events at the start, at the end and in the middle of blocks.
 const BLOCKS: [usize; 4] = [1, 64, 480, 4_801];
@@ -29,37 +29,39 @@ pub(crate) fn on(frame: u64, channel: u8, key: u8, id: i32, velocity: f32) -> (T
 /// Plays a song in a host and on the engine, compares the bits, and returns the sound.
 #[track_caller]
 pub(crate) fn compare(what: &str, patch: &Patch, song: &[(Timed, At)]) -> [Vec<f32>; 2] {
-    compare_in(&BLOCKS, what, patch, song)
+    compare_in(&mut player(), &BLOCKS, what, patch, song)
 }
 
 /// The same for one of many parameters, of which each has its block size: how blocks are divided does not depend on them.
 #[track_caller]
-pub(crate) fn compare_one(param: Param, what: &str, patch: &Patch, song: &[(Timed, At)]) {
-    compare_in(&[BLOCKS[param as usize % BLOCKS.len()]], what, patch, song);
+pub(crate) fn compare_one(player: &mut Player, param: Param, what: &str, patch: &Patch, song: &[(Timed, At)]) {
+    compare_in(player, &[BLOCKS[param as usize % BLOCKS.len()]], what, patch, song);
 }
 
 #[track_caller]
-fn compare_in(blocks: &[usize], what: &str, patch: &Patch, song: &[(Timed, At)]) -> [Vec<f32>; 2] {
+fn compare_in(player: &mut Player, blocks: &[usize], what: &str, patch: &Patch, song: &[(Timed, At)]) -> [Vec<f32>; 2] {
     let (sent, events): (Vec<Timed>, Vec<At>) = song.iter().copied().unzip();
     let expected = render(patch, RATE, &events, FRAMES);
     for &block in blocks {
-        let found = play(patch, &sent, block);
+        load(&mut player.instance, patch);
+        player.render(&[], 1, || 1);
+        player.audio.reset();
+        let found = player.render(&sent, FRAMES, || block);
         assert_same_bits(&format!("{what}, blocks of {block}"), &found.channels, &expected);
     }
     expected
 }
 
-fn play(patch: &Patch, song: &[Timed], block: usize) -> Rendered {
-    let mut instance = Instance::new();
-    load(&mut instance, patch);
-    instance.play(RATE, 8_192).render(song, FRAMES, || block)
+/// An instance for one song after the other, since it takes longer to make one than to play a song.
+pub(crate) fn player() -> Player {
+    Instance::new().play(RATE, 8_192)
 }
 
 /// Each parameter changes three times while notes sound, and once before a note, for changes that only new notes use.
 pub(crate) fn a_parameter_changes_at_its_frame() {
-    let mut instance = Instance::new();
+    let mut player = player();
     for info in PARAMS {
-        let id = instance.id(info.param);
+        let id = player.instance.id(info.param);
         let mut song = vec![on(0, 0, 60, 1, 0.9), on(7, 0, 67, 2, 0.5)];
         let mut now = patch().get(info.param);
         for (frame, position) in [(1_001, 0.3), (2_777, 0.8), (2_778, 0.55)] {
@@ -75,7 +77,7 @@ pub(crate) fn a_parameter_changes_at_its_frame() {
             song.push(on(frame + 300, 0, 55 + frame as u8 % 7, frame as i32, 0.7));
         }
         song.sort_by_key(|(sent, _)| sent.frame);
-        compare_one(info.param, info.id, &patch(), &song);
+        compare_one(&mut player, info.param, info.id, &patch(), &song);
     }
 }
 

@@ -66,8 +66,10 @@ pub(crate) fn a_preset_neither_has_nor_brings_the_window() {
 }
 
 pub(crate) fn all_other_contexts_are_alike() {
-    for mut instance in Instance::of_each(&open()) {
-        for state in [state("Marimba", [900, 700], 150, "light"), state_of_kit(&drums())] {
+    // They save kits alike.
+    let kits = [Some(state_of_kit(&drums())), None, None];
+    for (mut instance, kit) in Instance::of_each(&open()).into_iter().zip(kits) {
+        for state in kit.into_iter().chain([state("Marimba", [900, 700], 150, "light")]) {
             assert!(instance.load(&state));
             let saved = instance.save();
             for context in OTHERS {

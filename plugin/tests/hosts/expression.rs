@@ -1,6 +1,6 @@
 //! Changes of single notes by a host: modulation per voice, note expressions, MPE per channel; and the tempo.
 
-use crate::automation::{compare, compare_one, on, patch};
+use crate::automation::{compare, compare_one, on, patch, player};
 use crate::host::reference::At;
 use crate::host::{Address, Instance, Sent};
 use crate::parameters::is_stepped;
@@ -10,9 +10,9 @@ use sprung::params::{Change, PARAMS, Param};
 use sprung::patch::routes::Source;
 
 pub(crate) fn modulation_moves_one_voice_or_all() {
-    let mut instance = Instance::new();
+    let mut player = player();
     for info in PARAMS.iter().filter(|info| matches!(info.change, Change::Smoothed(_))) {
-        let id = instance.id(info.param);
+        let id = player.instance.id(info.param);
         // Hosts count amounts like values: for a stepped parameter, in steps.
         let travel = if is_stepped(info) { f64::from(info.max - info.min) } else { 1.0 };
         let amount = |note: i32, frame: u64, offset: f32| {
@@ -29,7 +29,7 @@ pub(crate) fn modulation_moves_one_voice_or_all() {
             on(5_000, 0, 67, 3, 0.6),
             amount(3, 5_001, 0.125),
         ];
-        compare_one(info.param, &format!("voices' {}", info.id), &patch(), &song);
+        compare_one(&mut player, info.param, &format!("voices' {}", info.id), &patch(), &song);
         // The wrapper adds modulation of the whole instrument to the knob's position, in single precision.
         let position = info.normalise(patch().get(info.param)) as f32;
         let everyone = |frame: u64, offset: f32| {
@@ -38,7 +38,7 @@ pub(crate) fn modulation_moves_one_voice_or_all() {
             (Sent::Modulate(id, Address::id(-1), f64::from(offset) * travel).at(frame), At(frame, 0, kind))
         };
         let all = [on(0, 0, 60, 1, 0.9), everyone(700, 0.125), on(900, 0, 64, 2, 0.8), everyone(3_000, 0.0)];
-        compare_one(info.param, &format!("everyone's {}", info.id), &patch(), &all);
+        compare_one(&mut player, info.param, &format!("everyone's {}", info.id), &patch(), &all);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::host::reference::{assert_clean, assert_same_bits, assert_sound};
 use crate::host::{Address, Instance, Parameter, Rendered, Sent, Timed};
+use crate::thorough;
 use clack_host::events::event_types::NoteExpressionType as Kind;
 use sprung::internals::random::{key, uniform};
 
@@ -84,8 +85,9 @@ pub(crate) fn random_events_give_clean_sound_at_every_rate() {
     let parameters = Instance::new().parameters();
     for (rate, seed) in [1_234.567_8, 8_000.0, 44_100.0, 48_000.0, 192_000.0, 768_000.0].into_iter().zip(0..) {
         let mut dice = Dice::new(seed);
-        let song = dice.song(&parameters, 1_500, 48_000);
-        let rendered = play(&song, rate, 96_000, || 1 + dice.below(700) as usize);
+        let frames = thorough::of(9_600, 48_000);
+        let song = dice.song(&parameters, frames / 32, frames as u64);
+        let rendered = play(&song, rate, 2 * frames, || 1 + dice.below(700) as usize);
         assert_sound(&format!("{rate} Hz"), &rendered.channels);
     }
 }
@@ -93,7 +95,7 @@ pub(crate) fn random_events_give_clean_sound_at_every_rate() {
 /// Random events give the same samples and the same ended notes for all block sizes.
 pub(crate) fn random_events_sound_the_same_in_all_blocks() {
     let parameters = Instance::new().parameters();
-    for seed in 10..18 {
+    for seed in (10..).take(thorough::of(3, 8)) {
         let mut dice = Dice::new(seed);
         let song = dice.song(&parameters, 400, 12_000);
         let whole = play(&song, 48_000.0, 14_400, || 8_192);
@@ -115,7 +117,7 @@ pub(crate) fn random_events_sound_the_same_in_all_blocks() {
 /// Random values of all parameters at once, each with some notes, as parameter fuzzers do.
 pub(crate) fn random_settings_sound_clean() {
     let parameters = Instance::new().parameters();
-    for seed in 30..90 {
+    for seed in (30..).take(thorough::of(15, 60)) {
         let mut dice = Dice::new(seed);
         let mut song: Vec<Timed> = parameters
             .iter()

@@ -1,4 +1,4 @@
-//! Creates and destroys a thousand instances, and checks that no memory, file or thread is left.
+//! Creates and destroys hundreds of instances, and checks that no memory, file or thread is left.
 
 use crate::host::{Address, Instance, Sent, open};
 use crate::patches::{patches, state};

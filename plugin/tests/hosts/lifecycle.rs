@@ -3,6 +3,7 @@
 use crate::host::reference::{At, assert_clean, assert_same_bits, assert_sound, render};
 use crate::host::{Address, Instance, Player, Sent, Timed, open};
 use crate::patches::{load, patches};
+use crate::thorough;
 use clack_extensions::audio_ports_config::{AudioPortsConfigBuffer, PluginAudioPortsConfig};
 use clack_extensions::render::{PluginRender, RenderMode};
 use clack_extensions::tail::TailLength;
@@ -32,8 +33,11 @@ fn plays_from_the_beginning(what: &str, player: &mut Player, patch: &Patch, rate
 }
 
 pub(crate) fn every_rate_and_block_size_plays() {
-    for rate in [1_234.567_8, 8_000.0, 11_025.0, 22_050.0, 44_100.0, 44_100.5, 96_000.0, 192_000.0, 768_000.0] {
-        for max_block in [1, 2, 31, 64, 512, 1_000, 8_192] {
+    let mut blocks = [1, 2, 31, 64, 512, 1_000, 8_192];
+    let rates = [1_234.567_8, 8_000.0, 11_025.0, 22_050.0, 44_100.0, 44_100.5, 96_000.0, 192_000.0, 768_000.0];
+    for rate in rates {
+        blocks.rotate_left(2);
+        for &max_block in &blocks[..thorough::of(2, 7)] {
             let mut instance = Instance::new();
             let patch = patches().swap_remove(1).1;
             load(&mut instance, &patch);

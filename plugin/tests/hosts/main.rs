@@ -55,6 +55,7 @@ mod standalone;
 mod state;
 #[cfg(target_os = "linux")]
 mod storm;
+mod thorough;
 #[cfg(target_os = "linux")]
 mod tuning;
 #[cfg(target_os = "linux")]
@@ -75,6 +76,8 @@ use std::sync::LazyLock;
 #[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "elsewhere, tests need nothing"))]
 enum Needs {
     Nothing,
+    /// Time alone, for all cases of a test that otherwise goes through a part of them.
+    Time,
     /// A virtual screen (Xvfb).
     Screen,
     /// A screen, and a bus for screen readers.
@@ -88,7 +91,7 @@ enum Needs {
 }
 
 impl Needs {
-    /// Whether tests with these needs wait for time to pass: what is on a screen comes when it comes.
+    /// Whether tests with these needs take long, or wait for time to pass: what is on a screen comes when it comes.
     fn wait(self) -> bool {
         !matches!(self, Needs::Nothing | Needs::Python)
     }
@@ -104,7 +107,7 @@ impl Needs {
         static SCREEN: LazyLock<Option<String>> = LazyLock::new(screen::missing);
         static PYTHON: LazyLock<Option<String>> = LazyLock::new(vst3::missing);
         match self {
-            Needs::Nothing => None,
+            Needs::Nothing | Needs::Time => None,
             Needs::Screen => SCREEN.clone(),
             Needs::ScreenReader => screen_reader::missing().or_else(|| SCREEN.clone()),
             Needs::Program => standalone::missing().or_else(|| SCREEN.clone()),
@@ -253,6 +256,28 @@ fn main() -> ExitCode {
             silence_gives_silence_after_the_tail
             at_a_mix_of_0_the_sound_is_as_it_was
         }
+        Time: fuzz {
+            random_events_give_clean_sound_at_every_rate
+            random_events_sound_the_same_in_all_blocks
+            random_settings_sound_clean
+        }
+        Time: lifecycle {
+            every_rate_and_block_size_plays
+        }
+        Time: resonator {
+            a_held_chord_has_the_bits_of_the_command
+        }
+        Time: song {
+            one_channel_has_the_bits_of_the_command
+            an_mpe_performance_has_the_bits_of_the_command
+            a_kit_has_the_bits_of_the_command
+            sound_that_comes_in_has_the_bits_of_the_command
+            sixteen_channels_have_the_bits_of_one_synth
+        }
+        Time: state {
+            what_is_saved_comes_back_to_the_byte
+            two_states_in_turn_while_audio_runs_are_never_mixed
+        }
         Nothing: vst3_state {
             parameters_have_the_numbers_of_their_ids
             states_of_all_versions_load
@@ -332,6 +357,10 @@ fn main() -> ExitCode {
         Screen: storm {
             the_window_comes_and_goes_while_parameters_are_automated
         }
+        Time: vst3 {
+            one_channel_has_the_bits_of_the_command
+            what_is_saved_comes_back
+        }
         Python: vst3 {
             every_parameter_can_be_set_and_read
             one_channel_has_the_bits_of_the_command
@@ -346,9 +375,12 @@ fn main() -> ExitCode {
         }
     };
     let trial = |(name, needs, test): (&str, Needs, fn())| {
+        let is_thorough = matches!(needs, Needs::Time);
+        let name = if is_thorough { format!("thorough::{name}") } else { name.to_owned() };
         let run = move || match needs.missing() {
             Some(missing) => Err(format!("it needs {missing}, which ‘cargo xtask setup --all’ installs").into()),
             None => {
+                thorough::set(is_thorough);
                 test();
                 Ok(())
             }

@@ -9,24 +9,29 @@ import pedalboard._pedalboard
 from pedalboard import AudioProcessorParameter, VST3Plugin
 
 
-def load(plugin, preset=None, name="Sprung", tried=10):
-    # Of each parameter it tries out a thousand values when a plugin is loaded: only where that is what is tested.
-    AudioProcessorParameter.__init__.__defaults__ = (tried,)
-    # It would try out thousands of values of each of the 2,080 parameters that stand for MIDI controllers.
-    pedalboard._pedalboard.PARAMETER_NAME_REGEXES_TO_IGNORE.add(re.compile(r"^MIDI Ch\. "))
+def load(plugin, preset=None, name="Sprung", unread=r"^MIDI Ch\. "):
+    """Loads a plugin; parameters whose names match are not tried out."""
+    # It would try out a thousand values of each when a plugin is loaded, and 2,080 stand for MIDI controllers.
+    AudioProcessorParameter.__init__.__defaults__ = (1,)
+    pedalboard._pedalboard.PARAMETER_NAME_REGEXES_TO_IGNORE = {re.compile(unread)}
     synth = VST3Plugin(plugin, plugin_name=name)
     if preset:
         # After a preset, the host goes on with the values that it knew before, and sets them when it resets the
         # plugin. A state makes it ask for the values.
-        other = VST3Plugin(plugin, plugin_name="Sprung")
+        other = load(plugin, unread="")
         other.load_preset(preset)
-        synth.raw_state = other.raw_state
+        set_state(synth, other.raw_state)
     return synth
+
+
+def set_state(synth, state):
+    """As `synth.raw_state = state`, which would look for a parameter of this name among all first."""
+    VST3Plugin.raw_state.__set__(synth, state)
 
 
 def render(plugin, preset, messages, sample_rate, block, frames, audio, name="Sprung"):
     """Plays MIDI messages, each a frame and bytes; the samples go to a file, channel by channel."""
-    synth = load(plugin, preset, name)
+    synth = load(plugin, preset, name, unread="")
     timed = [(bytes(data), frame / sample_rate) for frame, data in messages]
     samples = synth(timed, (frames + 0.25) / sample_rate, sample_rate, num_channels=2, buffer_size=block)
     samples = numpy.ascontiguousarray(samples[:, :frames], dtype="float32")
@@ -47,7 +52,7 @@ def effect(plugin, name, settings, incoming, sample_rate, block, audio):
 
 def parameters(plugin, positions):
     """Sets each parameter to each position: name, and (position, value, text) of each."""
-    synth = load(plugin, tried=1000)
+    synth = load(plugin)
     rows = []
     for parameter in synth.parameters.values():
         tried = []
@@ -60,9 +65,9 @@ def parameters(plugin, positions):
 
 def state(plugin, preset):
     """Loads a preset, moves the state into another instance: its values, and whether its state is the same."""
-    first = load(plugin, preset)
+    first = load(plugin, preset, unread="")
     second = load(plugin)
-    second.raw_state = first.raw_state
+    set_state(second, first.raw_state)
     return [[parameter.raw_value for parameter in second.parameters.values()], first.raw_state == second.raw_state]
 
 

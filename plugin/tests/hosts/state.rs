@@ -4,6 +4,7 @@ use crate::host::reference::{At, assert_same_bits, render};
 use crate::host::{Address, Instance, Player, Sent, Timed};
 use crate::patches::{drums, load, own_part, patch_in, patches, state, state_of_kit, state_of_text};
 use crate::process::{Stops, wait_until};
+use crate::thorough;
 use clack_host::prelude::EventBuffer;
 use sprung::engine::{EventKind, NoteId};
 use sprung::internals::random::{key, uniform};
@@ -45,7 +46,7 @@ pub(crate) fn values(instance: &mut Instance) -> Vec<f64> {
 }
 
 pub(crate) fn what_is_saved_comes_back_to_the_byte() {
-    for seed in 0..20 {
+    for seed in (0..).take(thorough::of(4, 20)) {
         let mut first = Instance::new();
         scramble(&mut first, seed);
         let (saved, set) = (first.save(), values(&mut first));
@@ -224,7 +225,7 @@ pub(crate) fn two_states_in_turn_while_audio_runs_are_never_mixed() {
         });
         // Loads happen before, during and after blocks: several between two blocks, and several blocks between two
         // loads.
-        for round in 0..1_000 {
+        for round in (0..).take(thorough::of(200, 1_000)) {
             let until = played.load(Ordering::Relaxed) + round % 3;
             wait_until("a block", || playing.is_finished() || played.load(Ordering::Relaxed) >= until);
             let (name, expected) = &patches[round as usize % 2];

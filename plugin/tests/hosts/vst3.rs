@@ -9,6 +9,7 @@ use crate::process::wait_until;
 use crate::resonator::{by_the_command, incoming, without_exciters};
 use crate::screen::{Onlooker, Screen};
 use crate::song::rendered_by_the_command;
+use crate::thorough;
 use serde_json::{Value, json};
 use sprung::engine::EventKind;
 use sprung::io::Song;
@@ -114,7 +115,7 @@ fn value_at(info: &ParamInfo, position: f64) -> f32 {
 }
 
 pub(crate) fn every_parameter_can_be_set_and_read() {
-    let positions = [0.0, 1.0, 0.5, 0.25, 0.1, 0.333_333, 0.9, 0.01, 0.618];
+    let positions = [0.0, 1.0, 0.25, 0.333_333, 0.618];
     for host in ["dawdreamer", "pedalboard"] {
         let answer = &ask(host, &[json!(["parameters", bundle::vst3(), positions])])[0];
         let rows = answer[0].as_array().unwrap();
@@ -151,7 +152,7 @@ pub(crate) fn every_parameter_can_be_set_and_read() {
 /// which both hosts are made, gives each parameter one value per block, at its first frame. Notes and their pressure
 /// have their own frames.
 pub(crate) fn one_channel_has_the_bits_of_the_command() {
-    let cases = patches().into_iter().zip([1, 64, 480].into_iter().cycle());
+    let cases = patches().into_iter().skip(thorough::of(3, 0)).zip([1, 64, 480].into_iter().cycle());
     let cases: Vec<Case> = cases
         .map(|((name, patch), block)| Case { name, state: state(&patch), kit: Kit::of_patch(&patch), block })
         .collect();
@@ -242,10 +243,10 @@ pub(crate) fn the_effect_has_the_bits_of_the_command() {
 
 pub(crate) fn what_is_saved_comes_back() {
     let folder = tempfile::tempdir().unwrap();
-    let patches = patches();
+    let patches = &patches()[thorough::of(4, 0)..];
     let file = |name: &str, what: &str| folder.path().join(format!("{name}.{what}"));
     let (mut of_dawdreamer, mut of_pedalboard) = (vec![], vec![]);
-    for (name, patch) in &patches {
+    for (name, patch) in patches {
         let preset = preset_file(folder.path(), name, &state(patch));
         of_dawdreamer.push(json!(["state", bundle::vst3(), preset, file(name, "first"), file(name, "second")]));
         of_pedalboard.push(json!(["state", bundle::vst3(), preset]));

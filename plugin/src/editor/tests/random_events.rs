@@ -7,8 +7,15 @@ use crate::state::State;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, pos2, vec2};
 use std::sync::Arc;
 
-/// Number of events for each of the four windows.
-const EVENTS: usize = 5_000;
+/// Sounds, windows and themes.
+const CASES: [(&str, [u32; 2], Theme); 4] = [
+    ("Glass Marimba", SIZE, Theme::Dark),
+    ("Marimba", LEAST_SIZE, Theme::Light),
+    ("Hand Kit", SIZE, Theme::HighContrast),
+    ("init", LEAST_SIZE, Theme::Dark),
+];
+/// Number of events for each of them in the commit's suite.
+const FEW: usize = 1_000;
 /// Most events between two passes.
 const AT_ONCE: usize = 6;
 const KEYS: [Key; 9] = [
@@ -74,11 +81,12 @@ fn event(numbers: &mut Numbers, place: &mut Pos2, size: [u32; 2]) -> Event {
     }
 }
 
-fn storm(seed: u64, sound: &str, size: [u32; 2], theme: Theme) {
+fn storm(case: usize, events: usize) {
+    let ((sound, size, theme), seed) = (CASES[case], case as u64 + 1);
     let mut band = Band::new(sound, size, theme);
     let mut numbers = Numbers(seed);
     let mut place = pos2(0.0, 0.0);
-    let mut left = EVENTS;
+    let mut left = events;
     while left > 0 {
         let count = (1 + numbers.below(AT_ONCE)).min(left);
         left -= count;
@@ -106,20 +114,26 @@ fn storm(seed: u64, sound: &str, size: [u32; 2], theme: Theme) {
 
 #[test]
 fn random_events_do_no_harm_to_a_pair_of_bodies() {
-    storm(1, "Glass Marimba", SIZE, Theme::Dark);
+    storm(0, FEW);
 }
 
 #[test]
 fn random_events_do_no_harm_in_a_small_window() {
-    storm(2, "Marimba", LEAST_SIZE, Theme::Light);
+    storm(1, FEW);
 }
 
 #[test]
 fn random_events_do_no_harm_to_a_kit() {
-    storm(3, "Hand Kit", SIZE, Theme::HighContrast);
+    storm(2, FEW);
 }
 
 #[test]
 fn random_events_do_no_harm_to_a_single_mass() {
-    storm(4, "init", LEAST_SIZE, Theme::Dark);
+    storm(3, FEW);
+}
+
+#[test]
+#[ignore = "takes half a minute"]
+fn many_random_events_do_no_harm() {
+    (0..CASES.len()).for_each(|case| storm(case, 5_000));
 }

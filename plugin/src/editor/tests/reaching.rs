@@ -24,12 +24,12 @@ impl Stage {
     /// Presses Tab, with Shift or without, until something of a role has the focus that could not be seen before, and is seen now.
     pub(super) fn reach(&mut self, role: Role, within: Rect, modifiers: Modifiers) {
         let before = self.seen(role, within, false);
-        let first = if modifiers.shift { before.last() } else { before.first() };
-        self.harness.get_by_role_and_label(role, first.unwrap()).focus();
+        let nearest = if modifiers.shift { before.first() } else { before.last() };
+        self.harness.get_by_role_and_label(role, nearest.unwrap()).focus();
         self.harness.run_steps(2);
         for _ in 0..300 {
             self.harness.key_press_modifiers(modifiers, Key::Tab);
-            self.harness.run_steps(2);
+            self.harness.step();
             if self.seen(role, within, true).iter().any(|now| !before.contains(now)) {
                 return;
             }

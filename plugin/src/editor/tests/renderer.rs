@@ -6,6 +6,7 @@ use egui_kittest::TestRenderer;
 use image::RgbaImage;
 use std::array::from_fn;
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// Corners lie on a grid with this many steps per pixel, as on GPUs: triangles that share an edge share it exactly.
 const GRID: f32 = 256.0;
@@ -35,10 +36,10 @@ impl Texture {
         }
     }
 
-    fn pixel(&self, x: f32, y: f32) -> [f32; 4] {
+    fn pixel(&self, x: f32, y: f32) -> Color32 {
         let [width, height] = self.size;
         let (x, y) = ((x.max(0.0) as usize).min(width - 1), (y.max(0.0) as usize).min(height - 1));
-        self.pixels[y * width + x].to_array().map(f32::from)
+        self.pixels[y * width + x]
     }
 
     /// The colour at a point with coordinates from 0 to 1, interpolated between the four nearest pixels.
@@ -46,8 +47,11 @@ impl Texture {
         let (x, y) = (u * self.size[0] as f32 - 0.5, v * self.size[1] as f32 - 0.5);
         let (left, top) = (x.floor(), y.floor());
         let (right, below) = (x - left, y - top);
-        let [a, b, c, d] =
-            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|[dx, dy]| self.pixel(left + dx, top + dy));
+        let four = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|[dx, dy]| self.pixel(left + dx, top + dy));
+        let [a, b, c, d] = four.map(|pixel| pixel.to_array().map(f32::from));
+        if four == [four[0]; 4] {
+            return a;
+        }
         from_fn(|i| {
             (a[i] * (1.0 - right) + b[i] * right) * (1.0 - below) + (c[i] * (1.0 - right) + d[i] * right) * below
         })
@@ -66,7 +70,7 @@ impl Canvas {
         let pixel = &mut self.pixels[(y * self.size[0] + x) as usize];
         let keep = 1.0 - colour[3] / 255.0;
         for (channel, over) in pixel.iter_mut().zip(colour) {
-            *channel = (over + f32::from(*channel) * keep).round().clamp(0.0, 255.0) as u8;
+            *channel = (over + f32::from(*channel) * keep + 0.5) as u8;
         }
     }
 
@@ -95,11 +99,11 @@ impl Canvas {
         let texel = is_even(uvs).then(|| texture.sample(uvs[0]));
         let colour = is_even(colours).then_some(colours[0]);
         let both = texel.zip(colour).map(|(texel, colour)| product(texel, colour));
+        let edges = from_fn(|i| Edge::new(places[(i + 1) % 3], places[(i + 2) % 3]));
         for y in rows {
-            for x in columns.clone() {
-                let Some(weights) = inside(places, [x * 256 + 128, y * 256 + 128]) else { continue };
+            for x in inside(&edges, columns.clone(), y) {
                 let blended = both.unwrap_or_else(|| {
-                    let shares = weights.map(|weight| weight as f32 / area as f32);
+                    let shares = edges.each_ref().map(|edge| edge.weight(x, y) as f32 / area as f32);
                     let texel = texel.unwrap_or_else(|| texture.sample(mixed(uvs, shares)));
                     product(texel, colour.unwrap_or_else(|| mixed(colours, shares)))
                 });
@@ -128,20 +132,38 @@ fn product(texel: [f32; 4], colour: [f32; 4]) -> [f32; 4] {
     from_fn(|i| texel[i] * colour[i] / 255.0)
 }
 
-/// The weights of the corners at a point; none if it is outside. A point on an edge belongs only to the triangle to the
-/// right of the edge or below it.
-fn inside(corners: [[i64; 2]; 3], [x, y]: [i64; 2]) -> Option<[i64; 3]> {
-    let mut weights = [0; 3];
-    for (i, weight) in weights.iter_mut().enumerate() {
-        let (from, to) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+/// The edge opposite a corner.
+struct Edge {
+    from: [i64; 2],
+    side: [i64; 2],
+    /// The least weight that is inside: a point on an edge belongs only to the triangle to the right of the edge or below it.
+    least: i64,
+}
+
+impl Edge {
+    fn new(from: [i64; 2], to: [i64; 2]) -> Self {
         let side = [to[0] - from[0], to[1] - from[1]];
-        *weight = side[0] * (y - from[1]) - side[1] * (x - from[0]);
         let is_top_or_left = side[1] < 0 || (side[1] == 0 && side[0] > 0);
-        if *weight < 0 || (*weight == 0 && !is_top_or_left) {
-            return None;
-        }
+        Self { from, side, least: i64::from(!is_top_or_left) }
     }
-    Some(weights)
+
+    /// The weight of the corner in the middle of a pixel.
+    fn weight(&self, x: i64, y: i64) -> i64 {
+        self.side[0] * (y * 256 + 128 - self.from[1]) - self.side[1] * (x * 256 + 128 - self.from[0])
+    }
+}
+
+/// Those columns of a row whose pixels are inside all three edges.
+fn inside(edges: &[Edge; 3], columns: Range<i64>, y: i64) -> Range<i64> {
+    edges.iter().fold(columns.clone(), |inside, edge| {
+        let (spare, growth) = (edge.weight(columns.start, y) - edge.least, -256 * edge.side[1]);
+        match growth {
+            1.. => inside.start.max(columns.start - spare.div_euclid(growth))..inside.end,
+            0 if spare >= 0 => inside,
+            0 => 0..0,
+            _ => inside.start..inside.end.min(columns.start + spare.div_euclid(-growth) + 1),
+        }
+    })
 }
 
 impl TestRenderer for Renderer {

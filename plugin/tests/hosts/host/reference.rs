@@ -2,6 +2,7 @@
 
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::patch::Patch;
+use std::cell::RefCell;
 
 /// An event of the engine with its frame in the song.
 #[derive(Clone, Copy, Debug)]
@@ -9,14 +10,23 @@ pub(crate) struct At(pub(crate) u64, pub(crate) u8, pub(crate) EventKind);
 
 /// Renders `frames` frames, left and right, in one block.
 pub(crate) fn render(patch: &Patch, sample_rate: f64, song: &[At], frames: usize) -> [Vec<f32>; 2] {
-    let mut synth = Synth::new(sample_rate, 0);
-    synth.reserve_space();
+    // The one that has rendered before, if its rate is the same: it takes longer to make one than to render a short song.
+    thread_local! {
+        static LAST: RefCell<Option<(f64, Synth)>> = const { RefCell::new(None) };
+    }
+    let last = LAST.take().filter(|(rate, _)| *rate == sample_rate).map(|(_, synth)| synth);
+    let mut synth = last.unwrap_or_else(|| {
+        let mut synth = Synth::new(sample_rate, 0);
+        synth.reserve_space();
+        synth
+    });
     synth.set_patch(patch);
     synth.reset();
     let events: Vec<Event> =
         song.iter().map(|&At(frame, channel, kind)| Event { frame: frame as u32, channel, kind }).collect();
     let [mut left, mut right] = [(); 2].map(|()| vec![0.0; frames]);
     synth.process(&events, &mut left, &mut right);
+    LAST.set(Some((sample_rate, synth)));
     [left, right]
 }
 
