@@ -15,14 +15,17 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU32};
 use std::sync::{Arc, Mutex};
 
-/// How many touches can wait for the audio thread. Half of the space is reserved for releases of keys.
+/// How many touches can wait for the audio thread. Half of the space is reserved for releases.
 const WAITING: usize = 64;
 
 /// How many messages can wait for the window.
 #[cfg(feature = "standalone")]
 const MESSAGES: usize = 16;
 
-/// A note played in the window. It is neither part of the state nor of a host's rendering to a file.
+/// MIDI's number of the modulation wheel.
+const WHEEL: u8 = 1;
+
+/// What is played in the window: notes and wheels. It is neither part of the state nor of a host's rendering to a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Touch {
     /// A key goes down, with a velocity from 0 to 1.
@@ -33,6 +36,10 @@ pub(crate) enum Touch {
     Nudge { channel: u8, key: u8, mode: u16, amplitude: f32 },
     /// A key goes down without a strike, and one mode of its note is pushed.
     Wake { key: u8, mode: u16, amplitude: f32 },
+    /// The pitch wheel stands at a place from −1 to 1.
+    Bend(f32),
+    /// The modulation wheel stands at a place from 0 to 1.
+    Wheel(f32),
 }
 
 impl Touch {
@@ -48,6 +55,8 @@ impl Touch {
             Self::Wake { key, mode, amplitude } => {
                 [Some(on(key, 0.0)), Some((0, EventKind::Nudge { key, mode, amplitude }))]
             }
+            Self::Bend(place) => [Some((0, EventKind::PitchBend(place))), None],
+            Self::Wheel(value) => [Some((0, EventKind::Control { controller: WHEEL, value })), None],
         };
         events.into_iter().flatten()
     }
@@ -91,8 +100,8 @@ impl Link {
     /// Plays a note. Without an audio thread nothing happens. Not for the audio thread.
     pub(crate) fn play(&self, touch: Touch) {
         if let Some(producer) = &mut *lock(&self.touches) {
-            // Each key that goes down must be able to go up: only half of the space is used for anything else.
-            if matches!(touch, Touch::Up { .. }) || producer.slots() > WAITING / 2 {
+            // What goes down must be able to go up, and the pitch to come back: only half of the space is used for anything else.
+            if matches!(touch, Touch::Up { .. } | Touch::Bend(0.0)) || producer.slots() > WAITING / 2 {
                 let _ = producer.push(touch);
             }
         }
@@ -160,6 +169,7 @@ mod tests {
         }
         assert!(consumer.pop().is_err());
         link.play(Touch::Up { key: 1 });
+        link.play(Touch::Bend(0.0));
         let mut consumer = link.connect(48_000.0);
         assert!(consumer.pop().is_err(), "what was sent to an earlier one is dropped");
     }

@@ -4,7 +4,7 @@ mod moved;
 mod sounding;
 
 use super::atomic::AtomicF32;
-use super::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF};
+use super::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF, RESET, WHEEL};
 use super::note::{NoteId, nearest_channel, nearest_key};
 use super::scope::Scope;
 use super::{Event, EventKind, Notes, Snapshot};
@@ -45,6 +45,8 @@ pub struct Telemetry {
     programs: [AtomicU16; 16],
     sounding: AtomicBool,
     moved: LastMoved,
+    /// Where the pitch wheel and the modulation wheel stand.
+    wheels: [AtomicF32; 2],
     scope: Scope,
     /// Number of snapshots still to publish before the next call of [`Telemetry::snapshot`].
     wanted: AtomicU32,
@@ -121,6 +123,11 @@ impl Telemetry {
         self.moved.read()
     }
 
+    /// Where the pitch wheel (−1 to 1) and the modulation wheel (0–1) that were moved last stand.
+    pub fn wheels(&self) -> [f32; 2] {
+        self.wheels.each_ref().map(AtomicF32::load)
+    }
+
     /// The last frames of the sound.
     pub fn scope(&self) -> &Scope {
         &self.scope
@@ -167,14 +174,22 @@ impl TelemetryWriter {
             EventKind::Control { controller: ALL_SOUND_OFF | ALL_NOTES_OFF..=127, .. } => {
                 keys.iter().for_each(|half| half.store(0, Relaxed));
             }
+            EventKind::PitchBend(place) => self.telemetry.wheels[0].store(place),
+            EventKind::Control { controller: WHEEL, value } => self.telemetry.wheels[1].store(value),
+            EventKind::Control { controller: RESET, .. } => self.rest_wheels(),
             EventKind::Program(number) => self.telemetry.programs[channel].store(u16::from(number) + 1, Relaxed),
             _ => {}
         }
     }
 
-    /// Records that no key is down, as after a reset.
+    /// Records that no key is down and no wheel is moved, as after a reset.
     pub fn release_keys(&self) {
         self.lift(Notes::default());
+        self.rest_wheels();
+    }
+
+    fn rest_wheels(&self) {
+        self.telemetry.wheels.iter().for_each(|wheel| wheel.store(0.0));
     }
 
     /// Marks the keys of these notes as up. With an identifier, a key stays down if another note has begun on it since.

@@ -20,6 +20,21 @@ fn load_is_a_share_of_the_period() {
 }
 
 #[test]
+fn wheels_stand_where_they_were_moved_last() {
+    let (telemetry, mut writer) = telemetry(48_000.0);
+    let mut tell = |kind| {
+        writer.note_event(&Event { frame: 0, channel: 3, kind });
+        telemetry.wheels()
+    };
+    assert_eq!(tell(EventKind::PitchBend(-0.5)), [-0.5, 0.0]);
+    assert_eq!(tell(EventKind::Control { controller: WHEEL, value: 0.25 }), [-0.5, 0.25]);
+    assert_eq!(tell(EventKind::Control { controller: RESET, value: 0.0 }), [0.0; 2]);
+    tell(EventKind::PitchBend(1.0));
+    writer.release_keys();
+    assert_eq!(telemetry.wheels(), [0.0; 2], "after a reset");
+}
+
+#[test]
 fn keys_and_programs_are_kept_by_channel() {
     let (telemetry, mut writer) = telemetry(48_000.0);
     let mut tell = |kind| writer.note_event(&Event { frame: 0, channel: 3, kind });

@@ -15,8 +15,10 @@ pub struct Figure {
     pub points: Vec<Point>,
     /// The colour of its material in white light.
     pub tint: Color32,
-    /// Thickness of a line as a share of the picture's shorter side; 0 for a string. It only tells bars from tubes.
+    /// Thickness of a line as a share of the picture's shorter side; 0 for a string.
     pub thickness: f32,
+    /// Whether a line is a tube, and not a bar.
+    pub is_round: bool,
     /// What is below a head in a small picture.
     pub drum: Option<Drum>,
 }
@@ -73,12 +75,12 @@ impl Figure {
     }
 
     fn with_grid(body: &Body, form: Form, grid: [usize; 2]) -> Self {
-        let thickness = match body.model {
-            Model::String => 0.0,
-            Model::OpenTube | Model::StoppedTube | Model::Cone { .. } | Model::TubularBell => 0.11,
-            _ => 0.07,
+        let (thickness, is_round) = match body.model {
+            Model::String => (0.0, true),
+            Model::OpenTube | Model::StoppedTube | Model::Cone { .. } | Model::TubularBell => (0.11, true),
+            _ => (0.07, false),
         };
-        Self { form, grid, points: Form::points(grid), tint: tint(body.material.id), thickness, drum: None }
+        Self { form, grid, points: Form::points(grid), tint: tint(body.material.id), thickness, is_round, drum: None }
     }
 }
 

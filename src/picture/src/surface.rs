@@ -13,8 +13,10 @@ const LIGHT: [f32; 3] = [-0.5, 0.45, 0.74];
 const AMBIENT: f32 = 0.2;
 /// Strength of highlights.
 const GLOSS: f32 = 0.3;
-/// Points of a line that is as thick as a bar: the share of its thickness above the middle, and its light.
+/// Points across a tube: the share of its thickness above the middle, and its light.
 const ROUND: [[f32; 2]; 4] = [[0.5, 0.62], [0.22, 1.15], [-0.2, 0.6], [-0.5, 0.22]];
+/// Those across a bar: its upper side as one looks down on it, and the side in front.
+const FLAT: [[f32; 2]; 4] = [[1.25, 0.85], [-0.25, 1.1], [-0.25, 0.5], [-0.75, 0.38]];
 
 /// How many flat pieces a drum's shell has, and where its wires lie in front of and behind the middle of its head.
 const SHELL: usize = 16;
@@ -54,7 +56,8 @@ impl Picture {
             if figure.thickness == 0.0 {
                 picture.string = points;
             } else {
-                picture.bar(&points, figure.thickness * rect.height().min(rect.width()), colour);
+                let across = if figure.is_round { &ROUND } else { &FLAT };
+                picture.bar(&points, across, figure.thickness * rect.height().min(rect.width()), colour);
             }
         } else {
             picture.surface(rect, figure, &displaced, colour);
@@ -70,6 +73,16 @@ impl Picture {
             form.on(rect, strike, nearest.map_or(0.0, displaced))
         });
         picture
+    }
+
+    /// The same body, with its lowest point at this height.
+    pub fn standing(mut self, floor: f32) -> Self {
+        let points = || self.vertices.iter().map(|(at, _)| at).chain(&self.string);
+        let down = vec2(0.0, floor - points().fold(f32::NEG_INFINITY, |lowest, at| lowest.max(at.y)));
+        let vertices = self.vertices.iter_mut().map(|(at, _)| at);
+        let edges = self.edges.iter_mut().flatten().chain(&mut self.string).chain(&mut self.strike);
+        vertices.chain(edges).for_each(|at| *at += down);
+        self
     }
 
     /// The shell of a drum. Returns the place of its head.
@@ -94,14 +107,20 @@ impl Picture {
         head
     }
 
-    /// A line as thick as a bar, round to the light.
-    fn bar(&mut self, points: &[Pos2], thickness: f32, colour: impl Fn(usize, f32, f32) -> Color32) {
+    /// A thick line, with these points across.
+    fn bar(
+        &mut self,
+        points: &[Pos2],
+        across: &[[f32; 2]],
+        thickness: f32,
+        colour: impl Fn(usize, f32, f32) -> Color32,
+    ) {
         for (number, point) in points.iter().enumerate() {
-            for [up, light] in ROUND {
-                self.vertices.push((*point - vec2(0.0, up * thickness), colour(number, light, 0.0)));
+            for [up, light] in across {
+                self.vertices.push((*point - vec2(0.0, up * thickness), colour(number, *light, 0.0)));
             }
         }
-        let across = ROUND.len() as u32;
+        let across = across.len() as u32;
         for first in (0..(points.len() as u32 - 1) * across).filter(|first| (first + 1) % across > 0) {
             self.triangles.push([first, first + 1, first + across + 1]);
             self.triangles.push([first, first + across + 1, first + across]);

@@ -27,7 +27,21 @@ pub(crate) fn paint(
     strike: Option<Point>,
     palette: &Palette,
 ) {
-    let picture = Picture::of(rect, figure, displacements, strike, palette.accent);
+    paint_picture(painter, Picture::of(rect, figure, displacements, strike, palette.accent), palette);
+}
+
+/// Paints a body at rest.
+pub(crate) fn paint_still(painter: &Painter, rect: Rect, figure: &Figure, palette: &Palette) {
+    paint(painter, rect, figure, &[], None, palette);
+}
+
+/// Paints a body that stands on the lower edge of the rectangle.
+pub(crate) fn paint_standing(painter: &Painter, rect: Rect, figure: &Figure, palette: &Palette) {
+    let picture = Picture::of(rect, figure, &[], None, palette.accent);
+    paint_picture(painter, picture.standing(rect.bottom()), palette);
+}
+
+fn paint_picture(painter: &Painter, picture: Picture, palette: &Palette) {
     if let [first, .., last] = picture.string[..] {
         painter.line_segment([first, last], Stroke::new(1.0, palette.line));
         for end in [first, last] {

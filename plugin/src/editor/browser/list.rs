@@ -1,21 +1,23 @@
-//! The list of the sounds that were found, each with a star that makes it a favourite and a picture of its body.
+//! The sounds that were found, on shelves: each with its body, its name, and a star that makes it a favourite.
 
 use super::sounds::Sounds;
 use crate::editor::body::face;
-use crate::editor::theme::{Palette, SMALL, TEXT};
+use crate::editor::theme::{Palette, RADIUS, TEXT};
 use crate::editor::widgets::text::line;
 use crate::editor::widgets::{list, outline};
-use egui::{Align2, Id, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
+use egui::{Align2, Id, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
 use sprung::internals::library::Listed;
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-/// Height of a row, and least width of a column.
+/// Height of a line of text.
 pub(super) const ROW: f32 = 22.0;
-const COLUMN: f32 = 210.0;
-
-/// Width of the picture of a body.
-const PICTURE: f32 = 24.0;
+/// Least width and height of a sound on its shelf, and those in a list that is low.
+const TILES: [[f32; 2]; 2] = [[112.0, 92.0], [86.0, 68.0]];
+const LOW: f32 = 300.0;
+/// Room for its name below the shelf, and the side of the star above it.
+const NAME: f32 = 24.0;
+const STAR: f32 = 18.0;
 
 /// The list, for one pass.
 pub(super) struct List<'a> {
@@ -43,33 +45,32 @@ impl List<'_> {
         let told = if says.is_empty() { 0.0 } else { ROW };
         line(ui.painter(), rect.with_max_y(rect.top() + ROW), Align2::LEFT_CENTER, says, TEXT, palette.muted);
         let below = rect.with_min_y(rect.top() + told);
-        list::show(ui, below, "sounds", [COLUMN, ROW], (found.len(), chosen), |ui, place, cell| {
-            let (sound, cell) = (&found[place], cell.shrink2(vec2(2.0, 1.0)));
-            let star = Rect::from_min_size(cell.min, vec2(20.0, cell.height()));
-            let response = ui.interact(cell.with_min_x(star.right()), row(place), Sense::click());
+        let tile = TILES[usize::from(rect.height() < LOW)];
+        list::show(ui, below, "sounds", tile, (found.len(), chosen), |ui, place, cell| {
+            let sound = &found[place];
+            let response = ui.interact(cell.shrink(2.0), row(place), Sense::click());
             let is_on = sound.name() == present;
             response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_on, sound.name()));
             if response.clicked() {
                 clicked.sound = Some(place);
             }
             if is_on || response.hovered() {
-                ui.painter().rect_filled(cell, 3.0, palette.raised);
+                ui.painter().rect_filled(response.rect, RADIUS, palette.raised);
             }
-            outline(ui, &response, response.rect, 3, palette);
+            outline(ui, &response, response.rect, RADIUS, palette);
+            let (stands, name) = cell.split_top_bottom_at_y(cell.bottom() - NAME);
+            ui.painter().hline(cell.x_range(), stands.bottom(), Stroke::new(2.0, palette.line));
+            if let Some(figure) = sounds.figure(sound) {
+                let room = stands.shrink2(vec2(14.0, 6.0));
+                face::paint_standing(ui.painter(), room.with_max_y(stands.bottom() - 1.0), figure, palette);
+            }
+            let colour = if is_on { palette.accent_text } else { palette.text };
+            let name = name.shrink2(vec2(4.0, 0.0)).with_max_y(cell.bottom() - 4.0);
+            line(ui.painter(), name, Align2::CENTER_CENTER, sound.name(), TEXT, colour);
+            let star = Rect::from_min_size(cell.right_top() + vec2(-STAR - 4.0, 4.0), vec2(STAR, STAR));
             if show_star(ui, star, place, sound.name(), sounds.is_favourite(sound), palette) {
                 clicked.star = Some(place);
             }
-            let colour = if is_on { palette.accent_text } else { palette.text };
-            let picture = Rect::from_min_size(star.right_top() + vec2(1.0, 0.25), vec2(PICTURE, cell.height()));
-            if let Some(figure) = sounds.figure(sound) {
-                face::paint(ui.painter(), picture.shrink2(vec2(1.0, 3.0)), figure, &[], None, palette);
-            }
-            let name = cell.with_min_x(picture.right() + 5.0);
-            let name = line(ui.painter(), name, Align2::LEFT_CENTER, sound.name(), TEXT, colour);
-            let rest = Rect::from_min_max(pos2(name.right() + 8.0, cell.top()), cell.max - vec2(4.0, 0.0));
-            let what =
-                if sound.path.is_some() { "yours" } else { sound.playable.tags().first().map_or("", String::as_str) };
-            line(ui.painter(), rest, Align2::RIGHT_CENTER, what, SMALL, palette.muted);
         });
         clicked
     }

@@ -77,7 +77,7 @@ pub(in crate::editor) struct Sounds {
     favourites: BTreeSet<String>,
     /// The names of the sounds that were chosen last, the newest first.
     recent: Vec<String>,
-    /// The bodies of presets, by their places in memory.
+    /// The bodies of sounds, by their places in memory.
     figures: BTreeMap<usize, Figure>,
     /// Sounds by their distance to the words for which they were last ranked.
     ranked: RefCell<Option<(String, Vec<Arc<Listed>>)>>,
@@ -95,11 +95,12 @@ impl Sounds {
             None
         });
         let favourites = favourites.unwrap_or_default();
-        let figure = |sound: &Arc<Listed>| match &sound.playable {
-            Playable::Preset(preset) => {
-                Some((Arc::as_ptr(sound).addr(), small_figure(&preset.patch.modes, preset.guide.family, &preset.tags)))
-            }
-            Playable::Kit(_) => None,
+        let figure = |sound: &Arc<Listed>| {
+            let preset = match &sound.playable {
+                Playable::Preset(preset) => preset,
+                Playable::Kit(kit) => &kit.sounds.first()?.1,
+            };
+            Some((Arc::as_ptr(sound).addr(), small_figure(&preset.patch.modes, preset.guide.family, &preset.tags)))
         };
         let figures = catalogue.sounds.iter().filter_map(figure).collect();
         let mut sounds =
@@ -113,7 +114,7 @@ impl Sounds {
         self.recent = self.library.as_ref().and_then(|library| library.recent().ok()).unwrap_or_default();
     }
 
-    /// The picture of a preset's body; none for a kit.
+    /// The picture of its body, of a kit that of its first sound; none for a kit without sounds.
     pub(in crate::editor) fn figure(&self, sound: &Arc<Listed>) -> Option<&Figure> {
         self.figures.get(&Arc::as_ptr(sound).addr())
     }

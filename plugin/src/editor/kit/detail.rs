@@ -77,7 +77,7 @@ impl Detail {
             let height = picture.height().min(0.6 * picture.width());
             let place =
                 Rect::from_center_size(picture.center(), vec2(0.8 * picture.width().min(2.0 * height), 0.8 * height));
-            face::paint(ui.painter(), place, figure, &[], None, palette);
+            face::paint_still(ui.painter(), place, figure, palette);
         }
         // Fields of their own for each pad: what is typed belongs to one.
         let mut fields = ui.new_child(UiBuilder::new().id_salt(("pad numbers", key)).max_rect(numbers));

@@ -217,7 +217,7 @@ impl Face<'_> {
         let picture = Rect::from_min_max(top.left_bottom(), named.right_top()).shrink(2.0);
         if let Some(figure) = self.figure.filter(|_| picture.height() >= 10.0) {
             let side = vec2(picture.width().min(2.0 * picture.height()), picture.height());
-            face::paint(painter, Rect::from_center_size(picture.center(), side), figure, &[], None, palette);
+            face::paint_still(painter, Rect::from_center_size(picture.center(), side), figure, palette);
         }
         // Its level as a bar, and its place between left and right as a dot.
         let split = bar.left() + 0.62 * bar.width();

@@ -73,7 +73,7 @@ impl SoundList {
             response.dnd_set_drag_payload(Carried::Sound(sound.clone()));
             let picture = row.with_max_x(row.left() + PICTURE);
             if let Some(figure) = sounds.figure(sound) {
-                face::paint(ui.painter(), picture.shrink2(vec2(2.0, 3.0)), figure, &[], None, palette);
+                face::paint_still(ui.painter(), picture.shrink2(vec2(2.0, 3.0)), figure, palette);
             }
             let name = row.with_min_x(picture.right() + 4.0);
             line(ui.painter(), name, Align2::LEFT_CENTER, sound.name(), TEXT, palette.text);

@@ -158,7 +158,7 @@ fn has_picture(section: Section) -> bool {
 fn picture(painter: &Painter, rect: Rect, section: Section, figure: &Figure, controls: &Controls) -> Option<String> {
     match section[0].param {
         Param::Decay => {
-            face::paint(painter, rect, figure, &[], None, controls.palette);
+            face::paint_still(painter, rect, figure, controls.palette);
             Some("the body".to_owned())
         }
         Param::Space => {
@@ -199,7 +199,7 @@ pub(in crate::editor) fn knobs(
         if info.unit == Unit::Choice {
             choice::show(ui, cell, info, &name, controls);
         } else {
-            knob::show(ui, cell, info, &name, &ring, controls);
+            knob::show(ui, (cell, KNOB), info, &name, &ring, controls);
         }
         ui.set_opacity(opacity);
     }

@@ -116,6 +116,10 @@ impl Picker {
             Ok(listing) => {
                 if !self.is_typed {
                     self.path = listing.folder.display().to_string();
+                    // All of it was marked, or will be: what is typed now replaces it.
+                    if ui.memory(|memory| memory.has_focus(Id::unique("path"))) {
+                        take_over(ui, Id::unique("path"), &self.path);
+                    }
                 }
                 self.chosen.clear();
                 self.listing = listing;

@@ -13,7 +13,7 @@ use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::pages::sections::ADDED;
 use crate::editor::routes::Ring;
 use crate::editor::routes::list::effects;
-use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, RADIUS, SMALL, TITLE_HEIGHT};
+use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, RADIUS, SMALL, TITLE_HEIGHT};
 use crate::editor::widgets::text::line;
 use crate::editor::widgets::{knob, outline};
 use crate::link::Link;
@@ -24,6 +24,8 @@ use sprung::params::{PARAMS, Param, ParamInfo};
 const TALL: f32 = 456.0;
 /// Width of the columns beside the body, on a page that is tall and on one that is not.
 const SIDES: [[f32; 2]; 2] = [[126.0, 170.0], [100.0, 130.0]];
+/// Width of a knob's face on a page that is tall.
+const LARGE: f32 = 50.0;
 /// Heights of the row with the spaces, and of the line about the body above it.
 const FOOT: f32 = 22.0;
 const CAPTION: f32 = 18.0;
@@ -70,8 +72,8 @@ impl PlayPage {
         controls: &mut Controls,
     ) -> Option<String> {
         let is_tall = rect.height() >= TALL;
-        let title = if is_tall { TITLE_HEIGHT } else { 0.0 };
-        let stage = rect.with_max_y(rect.bottom() - CELL_HEIGHT - title - 2.0 * PADDING - GAP);
+        let (title, side) = if is_tall { (TITLE_HEIGHT, LARGE) } else { (0.0, KNOB) };
+        let stage = rect.with_max_y(rect.bottom() - cell_height(side) - title - 2.0 * PADDING - GAP);
         let (now, link) = (ui.input(|input| input.time), controls.params.link());
         self.audition.follow_time(now, link);
         self.was_played |= !controls.notes.is_empty();
@@ -104,7 +106,7 @@ impl PlayPage {
             hands::show(ui, foot.with_min_x(spaces + GAP), &shown.patch().routes, controls);
         }
         self.audition.request_end(ui);
-        knobs(ui, rect.with_min_y(stage.bottom() + GAP), title, shown, controls);
+        knobs(ui, rect.with_min_y(stage.bottom() + GAP), [title, side], shown, controls);
         message
     }
 
@@ -131,8 +133,13 @@ impl PlayPage {
     }
 }
 
-/// Shows the macros that have names, the essential knobs and the gain.
-fn knobs(ui: &mut Ui, rect: Rect, title: f32, shown: &Shown, controls: &mut Controls) {
+/// Height of a cell whose knob's face is so wide.
+fn cell_height(side: f32) -> f32 {
+    CELL_HEIGHT - KNOB + side
+}
+
+/// Shows the macros that have names, the essential knobs and the gain, with a title so high and faces so wide.
+fn knobs(ui: &mut Ui, rect: Rect, [title, side]: [f32; 2], shown: &Shown, controls: &mut Controls) {
     let palette = controls.palette;
     palette.paint_panel(ui.painter(), rect);
     // Each sound of a kit has others.
@@ -170,9 +177,9 @@ fn knobs(ui: &mut Ui, rect: Rect, title: f32, shown: &Shown, controls: &mut Cont
                 line(ui.painter(), place, Align2::LEFT_CENTER, name, SMALL, palette.muted);
             }
             for (info, name) in knobs {
-                let cell = Rect::from_min_size(corner + vec2(0.0, title), vec2(width, CELL_HEIGHT - 4.0));
+                let cell = Rect::from_min_size(corner + vec2(0.0, title), vec2(width, cell_height(side) - 4.0));
                 let ring = Ring::of(info, &shown.patch().routes, controls);
-                knob::show(ui, cell.shrink2(vec2(1.0, 0.0)), info, &name, &ring, controls);
+                knob::show(ui, (cell.shrink2(vec2(1.0, 0.0)), side), info, &name, &ring, controls);
                 if ui.rect_contains_pointer(cell)
                     && let Some(effects) = effects(info, shown.patch(), controls)
                 {

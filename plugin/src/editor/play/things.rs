@@ -104,7 +104,7 @@ impl Things {
             ui.painter().rect(tile, RADIUS, face, edge(&response, is_lit, controls), StrokeKind::Inside);
             // A quarter of a pixel lower: edges on the centres of pixels are filled by some graphics drivers and not by others.
             let picture = tile.with_max_y(tile.bottom() - 15.0).shrink2(vec2(7.0, 4.0)).translate(vec2(0.0, 0.25));
-            face::paint(ui.painter(), picture, figure, &[], None, palette);
+            face::paint_still(ui.painter(), picture, figure, palette);
             let colour = if is_lit { palette.text } else { palette.muted };
             line(ui.painter(), tile.with_min_y(tile.bottom() - 16.0), Align2::CENTER_CENTER, name, SMALL, colour);
             if response.clicked() && !is_now {

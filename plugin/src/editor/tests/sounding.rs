@@ -3,8 +3,8 @@
 use super::pictures::{Stage, compare, compare_small, finish, stage};
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
-use egui::{Event, Modifiers, PointerButton, Pos2, Rect, vec2};
-use egui_kittest::kittest::Queryable as _;
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, vec2};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use rtrb::Consumer;
 use sprung::engine::{Event as Played, EventKind, Snapshot, Synth};
 use sprung::internals::display::TelemetryWriter;
@@ -105,6 +105,39 @@ impl Band {
         self.event(Event::PointerMoved(pos));
         self.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE });
     }
+}
+
+/// The wheels play, show where a player's own stand, and the pitch springs back when its wheel is let go.
+#[test]
+fn wheels_are_moved_here_and_there() {
+    let mut band = Band::new("Marimba", SIZE, Theme::Dark);
+    let value = |band: &Band, name| band.stage.harness.get_by_label(name).accesskit_node().numeric_value();
+    let top = band.rect("Bend").center_top();
+    band.press(top + vec2(0.0, 1.0), true);
+    assert_eq!((&band.heard[..], value(&band, "Bend")), (&[Touch::Bend(1.0)][..], Some(1.0)));
+    band.press(top + vec2(0.0, 1.0), false);
+    band.passes(2);
+    assert_eq!((band.heard.last(), value(&band, "Bend")), (Some(&Touch::Bend(0.0)), Some(0.0)));
+    let middle = band.rect("Wheel").center();
+    [true, false].into_iter().for_each(|pressed| band.press(middle, pressed));
+    band.passes(2);
+    assert_eq!((band.heard.last(), value(&band, "Wheel")), (Some(&Touch::Wheel(0.5)), Some(0.5)), "it stays");
+    band.play(EventKind::Control { controller: 1, value: 0.25 });
+    band.stage.harness.get_by_label("Wheel").focus();
+    band.passes(2);
+    band.event(Event::Key {
+        key: Key::ArrowUp,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    });
+    assert_eq!(band.heard.last(), Some(&Touch::Wheel(0.3)), "a step from where the player has it");
+    // What the window holds is let go when it closes.
+    band.press(top + vec2(0.0, 1.0), true);
+    let Band { stage, mut touches, .. } = band;
+    drop(stage);
+    assert_eq!(touches.pop().ok(), Some(Touch::Bend(0.0)));
 }
 
 #[test]

@@ -11,9 +11,15 @@ pub(crate) struct Layout {
     pub(crate) displays: Rect,
     pub(crate) path: Rect,
     pub(crate) sections: Rect,
+    /// Left of the keys; without width where there is no room for wheels.
+    pub(crate) wheels: Rect,
     pub(crate) piano: Rect,
     pub(crate) status: Rect,
 }
+
+/// Width of the wheels with the gap beside them, and that of a window that has room for them.
+const WHEELS: f32 = 72.0;
+const WHEELED: f32 = 900.0;
 
 /// The height of sections with this many rows of knobs.
 fn section_height(rows: usize) -> f32 {
@@ -31,7 +37,9 @@ impl Layout {
         let status = Rect::from_min_max(pos2(inner.left(), bottom - STATUS_HEIGHT), inner.max);
         bottom = status.top() - GAP / 2.0;
         let piano_height = (inner.height() * 0.115).clamp(40.0, 96.0);
-        let piano = Rect::from_min_max(pos2(inner.left(), bottom - piano_height), pos2(inner.right(), bottom));
+        let keys = Rect::from_min_max(pos2(inner.left(), bottom - piano_height), pos2(inner.right(), bottom));
+        let (wheels, piano) =
+            keys.split_left_right_at_x(inner.left() + if inner.width() < WHEELED { 0.0 } else { WHEELS });
         bottom = piano.top() - GAP;
         // As many rows of knobs as leave the upper half at least a third of the window.
         let room = bottom - top - PATH_HEIGHT - GAP;
@@ -45,7 +53,7 @@ impl Layout {
         let split = inner.left() + ((inner.width() - GAP) * 0.65).round();
         let modes = Rect::from_min_max(pos2(inner.left(), top), pos2(split, bottom));
         let displays = Rect::from_min_max(pos2(split + GAP, top), pos2(inner.right(), bottom));
-        Self { header, modes, displays, path, sections, piano, status }
+        Self { header, modes, displays, path, sections, wheels, piano, status }
     }
 
     /// The area between header and piano, for a page such as the browser.
@@ -65,7 +73,11 @@ mod tests {
         for [width, height] in [LEAST_SIZE, SIZE, [2000, 400], [640, 1600], [2600, 1600]] {
             let window = Rect::from_min_size(pos2(0.0, 0.0), vec2(width as f32, height as f32));
             let layout = Layout::of(window);
-            let Layout { header, modes, displays, path, sections, piano, status } = layout;
+            let Layout { header, modes, displays, path, sections, wheels, piano, status } = layout;
+            assert!(
+                wheels.width() == 0.0 || wheels.width() >= 48.0 && !wheels.shrink(0.01).intersects(piano),
+                "{wheels:?}"
+            );
             let parts = [header, modes, displays, path, sections, piano, status];
             for (place, part) in parts.iter().enumerate() {
                 assert!(window.contains_rect(*part), "{width} × {height}: part {place} {part:?}");

@@ -42,7 +42,7 @@ pub(super) struct Palette {
     pub(super) on_accent: Color32,
     /// Modulation.
     pub(super) modulation: Color32,
-    /// Levels up to full scale.
+    /// Levels up to full scale: of no hue, which is kept for what is set and what is modulated.
     pub(super) level: Color32,
     /// Error messages, and levels above full scale.
     pub(super) warning: Color32,
@@ -65,7 +65,7 @@ impl Palette {
         accent_text: rgb(236, 190, 92),
         on_accent: rgb(24, 20, 8),
         modulation: rgb(102, 178, 245),
-        level: rgb(86, 186, 122),
+        level: rgb(216, 213, 204),
         warning: rgb(255, 146, 96),
         white_key: rgb(224, 223, 218),
         black_key: rgb(24, 24, 30),
@@ -84,7 +84,7 @@ impl Palette {
         accent_text: rgb(118, 72, 0),
         on_accent: rgb(20, 12, 0),
         modulation: rgb(26, 108, 190),
-        level: rgb(46, 140, 82),
+        level: rgb(92, 90, 98),
         warning: rgb(166, 44, 8),
         white_key: rgb(253, 252, 250),
         black_key: rgb(52, 52, 60),
@@ -103,7 +103,7 @@ impl Palette {
         accent_text: rgb(255, 208, 0),
         on_accent: grey(0),
         modulation: rgb(92, 214, 255),
-        level: rgb(90, 255, 140),
+        level: grey(255),
         warning: rgb(255, 156, 120),
         white_key: grey(255),
         black_key: grey(0),

@@ -88,6 +88,7 @@ impl Drop for Window {
         let link = self.params.link();
         self.params.extent().close();
         self.piano.release(link);
+        self.wheels.release(link);
         self.computer_keyboard.release(link);
         self.browser.release(link);
         self.modes.release(link);

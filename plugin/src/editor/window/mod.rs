@@ -23,6 +23,7 @@ use crate::editor::host::extent;
 use crate::editor::host::focus::Focus;
 use crate::editor::keyboard::computer::ComputerKeyboard;
 use crate::editor::keyboard::piano::Piano;
+use crate::editor::keyboard::wheels::Wheels;
 use crate::editor::kit::KitPage;
 use crate::editor::manual::Manual;
 use crate::editor::modes::ModesView;
@@ -80,6 +81,7 @@ pub(super) struct Window {
     modes: ModesView,
     displays: Displays,
     piano: Piano,
+    wheels: Wheels,
     computer_keyboard: ComputerKeyboard,
     meter: Meter,
     load: Load,
@@ -147,6 +149,7 @@ impl Window {
             modes: ModesView::default(),
             displays: Displays::default(),
             piano: Piano::default(),
+            wheels: Wheels::default(),
             computer_keyboard: ComputerKeyboard::default(),
             meter: Meter::default(),
             load: Load::default(),
@@ -359,6 +362,7 @@ impl Window {
             self.news = Some(message);
         }
         self.browser.follow_time(now, &controls);
+        self.wheels.show(ui, layout.wheels, &mut controls);
         self.piano.show(ui, layout.piano, [down, self.shown.keys()], self.shown.guide(), &mut controls);
         // In a plugin, the computer's keyboard belongs to the host.
         let is_alone = host.plugin_api() == PluginApi::Standalone;

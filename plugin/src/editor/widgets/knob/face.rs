@@ -33,7 +33,7 @@ fn direction(position: f32) -> Vec2 {
 
 fn arc(painter: &Painter, centre: Pos2, radius: f32, [from, to]: [f32; 2], stroke: Stroke) {
     // As few lines as look round: a knob's arc is never more than a tenth of a pixel off. Each costs six triangles.
-    let steps = 2 + ((to - from).abs() * 22.0) as usize;
+    let steps = 2 + ((to - from).abs() * 22.0 * (radius / 18.0).max(1.0).sqrt()) as usize;
     let point = |step: usize| centre + radius * direction(from + (to - from) * step as f32 / steps as f32);
     painter.add(Shape::line((0..=steps).map(point).collect(), stroke));
 }

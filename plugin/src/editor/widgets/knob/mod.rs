@@ -24,6 +24,9 @@ const REST: f32 = 0.25;
 /// Factor for all movements while Shift is held.
 const FINE: f64 = 0.1;
 
+/// Height of its name, and of its value.
+const LINE: f32 = 13.0;
+
 /// Where the parts of a knob are in its cell.
 struct Parts {
     face: Rect,
@@ -32,22 +35,23 @@ struct Parts {
 }
 
 impl Parts {
-    fn of(cell: Rect) -> Self {
-        let line = |top: f32| Rect::from_min_size(pos2(cell.left(), cell.top() + top), vec2(cell.width(), 13.0));
-        let centre = pos2(cell.center().x, cell.top() + KNOB / 2.0 + 1.0);
-        Self { face: Rect::from_center_size(centre, vec2(KNOB, KNOB)), name: line(KNOB), value: line(KNOB + 13.0) }
+    /// For a face of this width and height.
+    fn of(cell: Rect, side: f32) -> Self {
+        let line = |top: f32| Rect::from_min_size(pos2(cell.left(), cell.top() + top), vec2(cell.width(), LINE));
+        let centre = pos2(cell.center().x, cell.top() + side / 2.0 + 1.0);
+        Self { face: Rect::from_center_size(centre, vec2(side, side)), name: line(side), value: line(side + LINE) }
     }
 }
 
 /// Where the name is in a cell.
 pub(crate) fn name_rect(cell: Rect) -> Rect {
-    Parts::of(cell).name
+    Parts::of(cell, KNOB).name
 }
 
 /// Where the face is in the part of a cell that is turned.
 #[cfg(test)]
 pub(crate) fn face_in(turned: Rect) -> Rect {
-    Parts::of(turned).face
+    Parts::of(turned, turned.height() - LINE).face
 }
 
 /// The widget's id. A parameter has one widget in a window.
@@ -97,16 +101,16 @@ fn turn(ui: &Ui, turned: Rect, value: Rect, travel: f32, info: &'static ParamInf
     Turned { text, mark, is_hovered, is_focused: response.has_focus() }
 }
 
-/// Shows a parameter's knob in a cell, under the title `name`; `ring` shows its modulation.
+/// Shows a parameter's knob in a cell, its face as wide as `side`, under the title `name`; `ring` shows its modulation.
 pub(crate) fn show(
     ui: &mut Ui,
-    cell: Rect,
+    (cell, side): (Rect, f32),
     info: &'static ParamInfo,
     name: &str,
     ring: &Ring,
     controls: &mut Controls,
 ) {
-    let parts = Parts::of(cell);
+    let parts = Parts::of(cell, side);
     let turned = turn(ui, cell.with_max_y(parts.value.top()), parts.value, TRAVEL, info, controls);
     let palette = controls.palette;
     let neutral = info.normalise(info.default) as f32;
