@@ -13,6 +13,7 @@ mod clicks;
 mod controllers;
 mod coupled_reference;
 mod damped_sine;
+mod damped_sine_itself;
 mod events;
 mod exciters;
 mod hammers;
