@@ -27,6 +27,8 @@ const SPACE: f32 = 4.0;
 /// Height of a title, and the space around the text of a source.
 const TITLE: f32 = 18.0;
 const AROUND: f32 = 14.0;
+/// What is said before sources in a line.
+const DRAG: &str = "drag to a knob";
 /// Width of the mark of a source that has routes.
 const DOT: f32 = 9.0;
 
@@ -46,17 +48,44 @@ fn routes_of(source: Source, shown: &Shown) -> usize {
     shown.patch().routes.iter().filter(is_of).count()
 }
 
+/// The name of a source. Macros have one that the sound gives them, under a title of their own.
+fn name(source: Source, shown: &Shown) -> String {
+    let own = drawn(source).or_else(|| shown.guide().macro_name(source.id()));
+    own.map_or_else(|| source_name(source, shown.guide()), str::to_owned)
+}
+
+/// Width of a source without a picture.
+fn chip_width(ui: &Ui, (source, name): (Source, &str), shown: &Shown) -> f32 {
+    width(ui.painter(), name, TEXT) + AROUND + if routes_of(source, shown) > 0 { DOT } else { 0.0 }
+}
+
+/// Shows these sources in a line, as many as there is room for, with what to do with them before; the last ends at the right.
+pub(in crate::editor) fn show_line(ui: &Ui, rect: Rect, sources: &[Source], shown: &Shown, controls: &mut Controls) {
+    let mut left = rect.left() + width(ui.painter(), DRAG, SMALL) + 3.0 * SPACE;
+    let mut places = Vec::new();
+    for source in sources {
+        let name = name(*source, shown);
+        let wide = chip_width(ui, (*source, &name), shown);
+        if left + wide > rect.right() {
+            break;
+        }
+        places.push((*source, name, Rect::from_min_size(pos2(left, rect.center().y - CHIP / 2.0), vec2(wide, CHIP))));
+        left += wide + SPACE;
+    }
+    let Some((.., last)) = places.last() else { return };
+    let by = vec2(rect.right() - last.right(), 0.0);
+    line(ui.painter(), rect.translate(by), Align2::LEFT_CENTER, DRAG, SMALL, controls.palette.muted);
+    for (source, name, place) in &places {
+        show_source(ui, place.translate(by), (*source, name), false, shown, controls);
+    }
+}
+
 /// Shows the sources. Returns the one with knobs that was clicked.
 pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, controls: &mut Controls) -> Option<Source> {
     let mut clicked = None;
     let mut inner = ui.new_child(UiBuilder::new().id_salt("sources").max_rect(rect));
     ScrollArea::vertical().id_salt("sources").auto_shrink(false).show(&mut inner, |ui| {
-        // Macros have a title of their own.
-        let name = |source: Source| {
-            let own = drawn(source).or_else(|| shown.guide().macro_name(source.id()));
-            own.map_or_else(|| source_name(source, shown.guide()), str::to_owned)
-        };
-        let names: Vec<(Source, String)> = Source::ALL.iter().map(|source| (*source, name(*source))).collect();
+        let names: Vec<(Source, String)> = Source::ALL.iter().map(|source| (*source, name(*source, shown))).collect();
         let whole = ui.available_width() - SPACE;
         let is_macro = |source: Source| section_of(source) == Some("Macros");
         let played = names.iter().filter(|(source, _)| section_of(*source).is_none());
@@ -78,8 +107,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, contr
             top += TITLE;
             let mut left = 0.0;
             for (source, name) in group {
-                let dot = if routes_of(*source, shown) > 0 { DOT } else { 0.0 };
-                let size = vec2((width(ui.painter(), name, TEXT) + AROUND + dot).min(whole), CHIP);
+                let size = vec2(chip_width(ui, (*source, name), shown).min(whole), CHIP);
                 if left > 0.0 && left + size.x > whole {
                     (left, top) = (0.0, top + CHIP + SPACE);
                 }
@@ -95,7 +123,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, contr
             line(ui.painter(), place, Align2::LEFT_CENTER, title, SMALL, controls.palette.muted);
         }
         for (source, name, place) in places {
-            if show_source(ui, place.translate(offset), (source, name), chosen, shown, controls) {
+            if show_source(ui, place.translate(offset), (source, name), source == chosen, shown, controls) {
                 clicked = section_of(source).map(|_| source).or(clicked);
             }
         }
@@ -108,13 +136,13 @@ fn show_source(
     ui: &Ui,
     rect: Rect,
     (source, name): (Source, &str),
-    chosen: Source,
+    is_chosen: bool,
     shown: &Shown,
     controls: &mut Controls,
 ) -> bool {
     let palette = controls.palette;
     let response = ui.interact(rect, Id::unique(("source", source.id())), Sense::click_and_drag());
-    let (is_chosen, used, is_preset) = (source == chosen, routes_of(source, shown), shown.preset().is_some());
+    let (used, is_preset) = (routes_of(source, shown), shown.preset().is_some());
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, format!("Source {name}")));
     if is_preset {
         response.dnd_set_drag_payload(source);
@@ -145,7 +173,7 @@ fn show_source(
     }
     let colour = if used > 0 || is_chosen { palette.text } else { palette.muted };
     let named = line(ui.painter(), inside, Align2::LEFT_CENTER, name, TEXT, colour);
-    if let Some(section) = drawn(source) {
+    if let Some(section) = drawn(source).filter(|_| rect.height() > CHIP) {
         let picture = inside.with_min_x((named.right() + 10.0).max(inside.center().x)).shrink2(vec2(0.0, 5.0));
         sections(&[section]).for_each(|section| {
             curves::paint(ui.painter(), picture, section, controls);

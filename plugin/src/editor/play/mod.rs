@@ -10,6 +10,7 @@ use crate::editor::body::view::{BodyView, velocity};
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
+use crate::editor::motion::sources;
 use crate::editor::pages::sections::ADDED;
 use crate::editor::routes::Ring;
 use crate::editor::routes::list::effects;
@@ -19,6 +20,7 @@ use crate::editor::widgets::{knob, outline};
 use crate::link::Link;
 use egui::{Align2, Rect, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use sprung::params::{PARAMS, Param, ParamInfo};
+use sprung::patch::routes::Source;
 
 /// The smallest height of a page with titles and tiles: 330 for the tiles of bodies and materials, and the rest for knobs and gaps.
 const TALL: f32 = 456.0;
@@ -39,6 +41,10 @@ const ESSENTIALS: [(Param, &str); 6] = [
     (Param::SpaceMix, "Space mix"),
     (Param::SpaceSize, "Space size"),
 ];
+
+/// What players move most, to be dragged to these knobs or, by way of a tab, to any.
+const SOURCES: [Source; 6] =
+    [Source::Velocity, Source::Pressure, Source::Wheel, Source::Lfo1, Source::Envelope1, Source::Random];
 
 /// The state of the page.
 #[derive(Default)]
@@ -174,7 +180,11 @@ fn knobs(ui: &mut Ui, rect: Rect, [title, side]: [f32; 2], shown: &Shown, contro
         for (name, knobs) in groups.into_iter().filter(|(_, knobs)| !knobs.is_empty()) {
             if title > 0.0 {
                 let place = Rect::from_min_size(corner, vec2(knobs.len() as f32 * width, title - 4.0));
-                line(ui.painter(), place, Align2::LEFT_CENTER, name, SMALL, palette.muted);
+                let named = line(ui.painter(), place, Align2::LEFT_CENTER, name, SMALL, palette.muted);
+                if name == "ESSENTIALS" && shown.preset().is_some() {
+                    let place = place.with_min_x(named.right() + 2.0 * GAP).with_max_x(place.right() + gap - GAP);
+                    sources::show_line(ui, place, &SOURCES, shown, controls);
+                }
             }
             for (info, name) in knobs {
                 let cell = Rect::from_min_size(corner + vec2(0.0, title), vec2(width, cell_height(side) - 4.0));

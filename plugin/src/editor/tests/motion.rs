@@ -114,6 +114,12 @@ fn a_source_that_is_dragged_to_a_knob_of_another_face_modulates_it() {
     assert_eq!(stage.params.loaded().kit.sounds()[0].patch().get(sprung::patch::routes::amount_param(place)), 25.0);
     stage.button("Undo");
     assert_eq!(stage.routes(), before);
+    // What players move most is on Play, too.
+    stage.harness.get_by_role_and_label(Role::Tab, "Play").click();
+    stage.harness.run_steps(3);
+    stage.carry("pressure", &[], "Width");
+    assert_eq!(stage.routes().get(place), Some(Route::linear(Source::Pressure, Param::Width)));
+    stage.button("Undo");
     // The same route is not made twice, and what is let go beside a knob makes none.
     stage.harness.get_by_role_and_label(Role::Tab, "Motion").click();
     stage.harness.run_steps(3);
