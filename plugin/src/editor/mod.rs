@@ -9,7 +9,7 @@
 //! | `pages` | the lower half: the way of the sound, sections of parameters, tuning, devices |
 //! | `motion`, `routes` | what moves: sources, envelopes and oscillators as curves; routes as sentences, also learnt and dragged |
 //! | `kit` | the pads of a kit, the sounds that are put on them, and the chosen pad; all keys of a preset |
-//! | `keyboard` | the piano, and whatever else plays a key |
+//! | `keyboard` | the piano and its wheels, and whatever else plays a key |
 //! | `browser`, `manual`, `drops`, `picker` | over the window: sounds to find and save, the manual, fits of dropped recordings, files |
 //! | `widgets` | what all of these are made of |
 //! | `background` | not seen: work of seconds on a thread of its own |
