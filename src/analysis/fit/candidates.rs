@@ -121,6 +121,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     #[test]
+    #[ignore = "takes seconds"]
     fn a_vibrato_that_modes_explain_is_found_as_one() {
         let mut turn = 0.0;
         let mut sample = |n: usize| {

@@ -233,6 +233,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "takes seconds"]
     fn a_sweep_and_its_vibrato_are_found_together() {
         let vibrato = Vibrato { semitones: 0.8, rate: 17.0, delay: 0.0 };
         let sweep = Sweep { semitones: 40.0, seconds: 0.45, curve: 0.0, vibrato };
