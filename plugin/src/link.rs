@@ -97,7 +97,7 @@ impl Link {
         *lock(&self.touches) = None;
     }
 
-    /// Plays a note. Without an audio thread nothing happens. Not for the audio thread.
+    /// Plays a note, or moves a wheel. Without an audio thread nothing happens. Not for the audio thread.
     pub(crate) fn play(&self, touch: Touch) {
         if let Some(producer) = &mut *lock(&self.touches) {
             // What goes down must be able to go up, and the pitch to come back: only half of the space is used for anything else.
@@ -169,9 +169,12 @@ mod tests {
         }
         assert!(consumer.pop().is_err());
         link.play(Touch::Up { key: 1 });
-        link.play(Touch::Bend(0.0));
         let mut consumer = link.connect(48_000.0);
         assert!(consumer.pop().is_err(), "what was sent to an earlier one is dropped");
+        (0..WAITING).for_each(|_| link.play(Touch::Bend(1.0)));
+        link.play(Touch::Bend(0.0));
+        let bends: Vec<Touch> = std::iter::from_fn(|| consumer.pop().ok()).collect();
+        assert_eq!((bends.len(), bends.last()), (WAITING / 2 + 1, Some(&Touch::Bend(0.0))), "the pitch comes back");
     }
 
     #[cfg(feature = "standalone")]

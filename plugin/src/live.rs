@@ -106,7 +106,7 @@ impl Live {
         (self.offsets, self.tempo, self.reported) = ([0.0; PARAM_COUNT], None, 0);
         self.early.clear();
         self.chord.iter_mut().for_each(Chord::reset);
-        self.telemetry.release_keys();
+        self.telemetry.reset();
     }
 
     /// Applies changes of the sound, of the knobs, and of the modulation of the whole instrument. While another thread
@@ -189,6 +189,8 @@ impl Live {
     fn pass_on(&mut self, channel: u8, kind: EventKind) {
         self.tail.forget();
         let event = Event { frame: 0, channel, kind };
+        // The window shows keys and wheels also while nothing sounds.
+        self.repaint.request_repaint();
         self.telemetry.note_event(&event);
         self.synth.handle(&event);
     }

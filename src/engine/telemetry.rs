@@ -4,6 +4,7 @@ mod moved;
 mod sounding;
 
 use super::atomic::AtomicF32;
+use super::event::{finite, unit};
 use super::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF, RESET, WHEEL};
 use super::note::{NoteId, nearest_channel, nearest_key};
 use super::scope::Scope;
@@ -45,8 +46,8 @@ pub struct Telemetry {
     programs: [AtomicU16; 16],
     sounding: AtomicBool,
     moved: LastMoved,
-    /// Where the pitch wheel and the modulation wheel stand.
-    wheels: [AtomicF32; 2],
+    /// Where the pitch wheel and the modulation wheel of each channel stand.
+    wheels: [[AtomicF32; 2]; 16],
     scope: Scope,
     /// Number of snapshots still to publish before the next call of [`Telemetry::snapshot`].
     wanted: AtomicU32,
@@ -123,9 +124,9 @@ impl Telemetry {
         self.moved.read()
     }
 
-    /// Where the pitch wheel (−1 to 1) and the modulation wheel (0–1) that were moved last stand.
-    pub fn wheels(&self) -> [f32; 2] {
-        self.wheels.each_ref().map(AtomicF32::load)
+    /// Where the pitch wheel (−1 to 1) and the modulation wheel (0–1) of a MIDI channel stand.
+    pub fn wheels(&self, channel: u8) -> [f32; 2] {
+        self.wheels[usize::from(nearest_channel(channel))].each_ref().map(AtomicF32::load)
     }
 
     /// The last frames of the sound.
@@ -158,7 +159,7 @@ impl TelemetryWriter {
     pub fn note_event(&mut self, event: &Event) {
         self.telemetry.moved.note(&event.kind);
         let channel = usize::from(nearest_channel(event.channel));
-        let keys = &self.telemetry.keys[channel];
+        let (keys, wheels) = (&self.telemetry.keys[channel], &self.telemetry.wheels[channel]);
         let mut press = |key: u8, id: Option<NoteId>| {
             let key = nearest_key(key);
             keys[usize::from(key >> 6)].fetch_or(1 << (key & 63), Relaxed);
@@ -174,22 +175,18 @@ impl TelemetryWriter {
             EventKind::Control { controller: ALL_SOUND_OFF | ALL_NOTES_OFF..=127, .. } => {
                 keys.iter().for_each(|half| half.store(0, Relaxed));
             }
-            EventKind::PitchBend(place) => self.telemetry.wheels[0].store(place),
-            EventKind::Control { controller: WHEEL, value } => self.telemetry.wheels[1].store(value),
-            EventKind::Control { controller: RESET, .. } => self.rest_wheels(),
+            EventKind::PitchBend(bend) => wheels[0].store(finite(bend).clamp(-1.0, 1.0)),
+            EventKind::Control { controller: WHEEL, value } => wheels[1].store(unit(value)),
+            EventKind::Control { controller: RESET, .. } => rest(wheels),
             EventKind::Program(number) => self.telemetry.programs[channel].store(u16::from(number) + 1, Relaxed),
             _ => {}
         }
     }
 
     /// Records that no key is down and no wheel is moved, as after a reset.
-    pub fn release_keys(&self) {
+    pub fn reset(&self) {
         self.lift(Notes::default());
-        self.rest_wheels();
-    }
-
-    fn rest_wheels(&self) {
-        self.telemetry.wheels.iter().for_each(|wheel| wheel.store(0.0));
+        self.telemetry.wheels.iter().for_each(rest);
     }
 
     /// Marks the keys of these notes as up. With an identifier, a key stays down if another note has begun on it since.
@@ -264,6 +261,11 @@ impl TelemetryWriter {
 
 /// Displacement and energy of each mass.
 struct Masses([[AtomicF32; 2]; MAX_MODES]);
+
+/// Marks the wheels of a channel as not moved.
+fn rest(wheels: &[AtomicF32; 2]) {
+    wheels.iter().for_each(|wheel| wheel.store(0.0));
+}
 
 /// Marks a key of a channel as up.
 fn lift_key(keys: &[AtomicU64; 2], key: u8) {

@@ -320,7 +320,7 @@ fn blocks_make_no_difference() {
     if let Err(error) = result {
         panic!("{error}");
     }
-    // Each run has cases of its own. Of 32, 19 to 25 sound: so few never come of chance.
+    // The cases are random: of 32, 19 to 25 sounded in eight runs, so that fewer than 8 are no chance.
     assert!(sounding.get() > CASES / 4, "only {} of {CASES} cases sounded", sounding.get());
 }
 

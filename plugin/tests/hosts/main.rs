@@ -86,6 +86,8 @@ enum Needs {
     Program,
     /// The Python hosts.
     Python,
+    /// The Python hosts, and time for all cases.
+    PythonAndTime,
     /// The Python hosts and a screen.
     PythonAndScreen,
 }
@@ -111,7 +113,7 @@ impl Needs {
             Needs::Screen => SCREEN.clone(),
             Needs::ScreenReader => screen_reader::missing().or_else(|| SCREEN.clone()),
             Needs::Program => standalone::missing().or_else(|| SCREEN.clone()),
-            Needs::Python => PYTHON.clone(),
+            Needs::Python | Needs::PythonAndTime => PYTHON.clone(),
             Needs::PythonAndScreen => PYTHON.clone().or_else(|| SCREEN.clone()),
         }
     }
@@ -357,7 +359,7 @@ fn main() -> ExitCode {
         Screen: storm {
             the_window_comes_and_goes_while_parameters_are_automated
         }
-        Time: vst3 {
+        PythonAndTime: vst3 {
             one_channel_has_the_bits_of_the_command
             what_is_saved_comes_back
         }
@@ -375,7 +377,7 @@ fn main() -> ExitCode {
         }
     };
     let trial = |(name, needs, test): (&str, Needs, fn())| {
-        let is_thorough = matches!(needs, Needs::Time);
+        let is_thorough = matches!(needs, Needs::Time | Needs::PythonAndTime);
         let name = if is_thorough { format!("thorough::{name}") } else { name.to_owned() };
         let run = move || match needs.missing() {
             Some(missing) => Err(format!("it needs {missing}, which ‘cargo xtask setup --all’ installs").into()),

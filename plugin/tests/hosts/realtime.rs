@@ -136,7 +136,7 @@ fn play_under_watch(mut instance: Instance, parent: Option<Parent>) -> ExitCode 
         let peak = f32::from_bits(loudest.load(Ordering::Relaxed));
         eprintln!("{played} blocks, {round} rounds of the main thread, a peak of {peak}");
         // The watched thread cannot even end normally, so the whole process exits.
-        std::process::exit(i32::from(seen() || played < least || peak < 1e-3));
+        std::process::exit(i32::from(seen() || played < least || round < ROUNDS || peak < 1e-3));
     })
 }
 

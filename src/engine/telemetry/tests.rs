@@ -24,14 +24,16 @@ fn wheels_stand_where_they_were_moved_last() {
     let (telemetry, mut writer) = telemetry(48_000.0);
     let mut tell = |kind| {
         writer.note_event(&Event { frame: 0, channel: 3, kind });
-        telemetry.wheels()
+        telemetry.wheels(3)
     };
     assert_eq!(tell(EventKind::PitchBend(-0.5)), [-0.5, 0.0]);
     assert_eq!(tell(EventKind::Control { controller: WHEEL, value: 0.25 }), [-0.5, 0.25]);
     assert_eq!(tell(EventKind::Control { controller: RESET, value: 0.0 }), [0.0; 2]);
-    tell(EventKind::PitchBend(1.0));
-    writer.release_keys();
-    assert_eq!(telemetry.wheels(), [0.0; 2], "after a reset");
+    assert_eq!(tell(EventKind::PitchBend(f32::NAN)), [0.0; 2]);
+    assert_eq!(tell(EventKind::PitchBend(5.0)), [1.0, 0.0]);
+    assert_eq!(telemetry.wheels(2), [0.0; 2], "another channel's");
+    writer.reset();
+    assert_eq!(telemetry.wheels(3), [0.0; 2]);
 }
 
 #[test]
@@ -64,7 +66,7 @@ fn keys_and_programs_are_kept_by_channel() {
     tell(EventKind::Release { notes: Notes { id: other, channel: None, key: None }, velocity: 0.5 });
     assert_eq!(telemetry.keys(3), 0, "a note that is ended by its identifier alone");
     tell(EventKind::NoteOn { key: 5, detune: 0.0, velocity: 1.0, id: None });
-    writer.release_keys();
+    writer.reset();
     assert_eq!(telemetry.keys(3), 0);
 }
 

@@ -2,7 +2,7 @@
 
 use super::sounds::Sounds;
 use crate::editor::body::face;
-use crate::editor::theme::{Palette, RADIUS, TEXT};
+use crate::editor::theme::{Palette, RADIUS, SMALL, TEXT};
 use crate::editor::widgets::text::line;
 use crate::editor::widgets::{list, outline};
 use egui::{Align2, Id, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
@@ -12,10 +12,11 @@ use std::sync::Arc;
 
 /// Height of a line of text.
 pub(super) const ROW: f32 = 22.0;
-/// Least width and height of a sound on its shelf, and those in a list that is low.
+/// Least width and height of a sound on its shelf: six stand on one of the usual window, and three in a list that is low.
 const TILES: [[f32; 2]; 2] = [[112.0, 92.0], [86.0, 68.0]];
+/// Height below which a list is low: that of three shelves.
 const LOW: f32 = 300.0;
-/// Room for its name below the shelf, and the side of the star above it.
+/// Room for a sound's name below its shelf, and the side of the star above it.
 const NAME: f32 = 24.0;
 const STAR: f32 = 18.0;
 
@@ -60,13 +61,16 @@ impl List<'_> {
             outline(ui, &response, response.rect, RADIUS, palette);
             let (stands, name) = cell.split_top_bottom_at_y(cell.bottom() - NAME);
             ui.painter().hline(cell.x_range(), stands.bottom(), Stroke::new(2.0, palette.line));
-            if let Some(figure) = sounds.figure(sound) {
+            if let Some(figure) = sounds.figure(sound).filter(|_| ui.is_rect_visible(stands)) {
                 let room = stands.shrink2(vec2(14.0, 6.0));
                 face::paint_standing(ui.painter(), room.with_max_y(stands.bottom() - 1.0), figure, palette);
             }
             let colour = if is_on { palette.accent_text } else { palette.text };
             let name = name.shrink2(vec2(4.0, 0.0)).with_max_y(cell.bottom() - 4.0);
             line(ui.painter(), name, Align2::CENTER_CENTER, sound.name(), TEXT, colour);
+            if sound.path.is_some() {
+                line(ui.painter(), cell.shrink2(vec2(6.0, 4.0)), Align2::LEFT_TOP, "yours", SMALL, palette.muted);
+            }
             let star = Rect::from_min_size(cell.right_top() + vec2(-STAR - 4.0, 4.0), vec2(STAR, STAR));
             if show_star(ui, star, place, sound.name(), sounds.is_favourite(sound), palette) {
                 clicked.star = Some(place);

@@ -76,7 +76,7 @@ pub(in crate::editor) fn show_line(ui: &Ui, rect: Rect, sources: &[Source], show
     let by = vec2(rect.right() - last.right(), 0.0);
     line(ui.painter(), rect.translate(by), Align2::LEFT_CENTER, DRAG, SMALL, controls.palette.muted);
     for (source, name, place) in &places {
-        show_source(ui, place.translate(by), (*source, name), false, shown, controls);
+        show_source(ui, place.translate(by), (*source, name), None, shown, controls);
     }
 }
 
@@ -123,7 +123,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, contr
             line(ui.painter(), place, Align2::LEFT_CENTER, title, SMALL, controls.palette.muted);
         }
         for (source, name, place) in places {
-            if show_source(ui, place.translate(offset), (source, name), source == chosen, shown, controls) {
+            if show_source(ui, place.translate(offset), (source, name), Some(source == chosen), shown, controls) {
                 clicked = section_of(source).map(|_| source).or(clicked);
             }
         }
@@ -131,17 +131,19 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, contr
     clicked
 }
 
-/// Shows a source. Returns whether it was clicked.
+/// Shows a source, which can be chosen by a click or is only dragged. Returns whether it was clicked.
 fn show_source(
     ui: &Ui,
     rect: Rect,
     (source, name): (Source, &str),
-    is_chosen: bool,
+    chosen: Option<bool>,
     shown: &Shown,
     controls: &mut Controls,
 ) -> bool {
     let palette = controls.palette;
-    let response = ui.interact(rect, Id::unique(("source", source.id())), Sense::click_and_drag());
+    // What a click does nothing with is no stop for Tab.
+    let (sense, is_chosen) = (chosen.map_or(Sense::DRAG, |_| Sense::click_and_drag()), chosen == Some(true));
+    let response = ui.interact(rect, Id::unique(("source", source.id())), sense);
     let (used, is_preset) = (routes_of(source, shown), shown.preset().is_some());
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, format!("Source {name}")));
     if is_preset {

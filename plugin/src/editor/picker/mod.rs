@@ -116,7 +116,7 @@ impl Picker {
             Ok(listing) => {
                 if !self.is_typed {
                     self.path = listing.folder.display().to_string();
-                    // All of it was marked, or will be: what is typed now replaces it.
+                    // Its field has the focus: it is marked again, so that typing replaces it.
                     if ui.memory(|memory| memory.has_focus(Id::unique("path"))) {
                         take_over(ui, Id::unique("path"), &self.path);
                     }

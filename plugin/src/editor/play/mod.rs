@@ -23,11 +23,11 @@ use sprung::params::{PARAMS, Param, ParamInfo};
 use sprung::patch::routes::Source;
 
 /// The smallest height of a page with titles and tiles: 330 for the tiles of bodies and materials, and the rest for knobs and gaps.
-const TALL: f32 = 456.0;
+const TALL: f32 = 472.0;
 /// Width of the columns beside the body, on a page that is tall and on one that is not.
 const SIDES: [[f32; 2]; 2] = [[126.0, 170.0], [100.0, 130.0]];
-/// Width of a knob's face on a page that is tall.
-const LARGE: f32 = 50.0;
+/// Width of a knob's face on a page that is tall: half as wide again as elsewhere, since hands go there first.
+const LARGE: f32 = 1.5 * KNOB;
 /// Heights of the row with the spaces, and of the line about the body above it.
 const FOOT: f32 = 22.0;
 const CAPTION: f32 = 18.0;

@@ -112,6 +112,10 @@ impl Band {
 fn wheels_are_moved_here_and_there() {
     let mut band = Band::new("Marimba", SIZE, Theme::Dark);
     let value = |band: &Band, name| band.stage.harness.get_by_label(name).accesskit_node().numeric_value();
+    let key = |pressed| {
+        let (physical_key, modifiers) = (None, Modifiers::NONE);
+        Event::Key { key: Key::ArrowUp, physical_key, pressed, repeat: false, modifiers }
+    };
     let top = band.rect("Bend").center_top();
     band.press(top + vec2(0.0, 1.0), true);
     assert_eq!((&band.heard[..], value(&band, "Bend")), (&[Touch::Bend(1.0)][..], Some(1.0)));
@@ -125,14 +129,16 @@ fn wheels_are_moved_here_and_there() {
     band.play(EventKind::Control { controller: 1, value: 0.25 });
     band.stage.harness.get_by_label("Wheel").focus();
     band.passes(2);
-    band.event(Event::Key {
-        key: Key::ArrowUp,
-        physical_key: None,
-        pressed: true,
-        repeat: false,
-        modifiers: Modifiers::NONE,
-    });
+    band.event(key(true));
     assert_eq!(band.heard.last(), Some(&Touch::Wheel(0.3)), "a step from where the player has it");
+    band.event(key(false));
+    // An arrow bends as long as it is down.
+    band.stage.harness.get_by_label("Bend").focus();
+    band.passes(2);
+    for (pressed, bend) in [(true, 1.0), (false, 0.0)] {
+        band.event(key(pressed));
+        assert_eq!(band.heard.last(), Some(&Touch::Bend(bend)));
+    }
     // What the window holds is let go when it closes.
     band.press(top + vec2(0.0, 1.0), true);
     let Band { stage, mut touches, .. } = band;

@@ -17,9 +17,10 @@ pub(crate) struct Layout {
     pub(crate) status: Rect,
 }
 
-/// Width of the wheels with the gap beside them, and that of a window that has room for them.
+/// Width of two wheels with a gap beside each, as wide as their names, and the least width of a window that has them: beside them
+/// there is room for five octaves.
 const WHEELS: f32 = 72.0;
-const WHEELED: f32 = 900.0;
+const LEAST_WIDTH_WITH_WHEELS: f32 = 900.0;
 
 /// The height of sections with this many rows of knobs.
 fn section_height(rows: usize) -> f32 {
@@ -38,8 +39,8 @@ impl Layout {
         bottom = status.top() - GAP / 2.0;
         let piano_height = (inner.height() * 0.115).clamp(40.0, 96.0);
         let keys = Rect::from_min_max(pos2(inner.left(), bottom - piano_height), pos2(inner.right(), bottom));
-        let (wheels, piano) =
-            keys.split_left_right_at_x(inner.left() + if inner.width() < WHEELED { 0.0 } else { WHEELS });
+        let (wheels, piano) = keys
+            .split_left_right_at_x(inner.left() + if window.width() < LEAST_WIDTH_WITH_WHEELS { 0.0 } else { WHEELS });
         bottom = piano.top() - GAP;
         // As many rows of knobs as leave the upper half at least a third of the window.
         let room = bottom - top - PATH_HEIGHT - GAP;
@@ -74,10 +75,8 @@ mod tests {
             let window = Rect::from_min_size(pos2(0.0, 0.0), vec2(width as f32, height as f32));
             let layout = Layout::of(window);
             let Layout { header, modes, displays, path, sections, wheels, piano, status } = layout;
-            assert!(
-                wheels.width() == 0.0 || wheels.width() >= 48.0 && !wheels.shrink(0.01).intersects(piano),
-                "{wheels:?}"
-            );
+            assert_eq!(wheels.width() > 0.0, width >= 900, "{width} × {height}: {wheels:?}");
+            assert!(window.contains_rect(wheels) && !wheels.shrink(0.01).intersects(piano), "{wheels:?}");
             let parts = [header, modes, displays, path, sections, piano, status];
             for (place, part) in parts.iter().enumerate() {
                 assert!(window.contains_rect(*part), "{width} × {height}: part {place} {part:?}");

@@ -1,7 +1,7 @@
 //! Draws the face of a knob: an arc from the default to the position, a pointer, and rings for modulation.
 
 use crate::editor::routes::Ring;
-use crate::editor::theme::Palette;
+use crate::editor::theme::{KNOB, Palette};
 use crate::editor::widgets::disc;
 use crate::marks::{Colour, Mark};
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
@@ -33,7 +33,7 @@ fn direction(position: f32) -> Vec2 {
 
 fn arc(painter: &Painter, centre: Pos2, radius: f32, [from, to]: [f32; 2], stroke: Stroke) {
     // As few lines as look round: a knob's arc is never more than a tenth of a pixel off. Each costs six triangles.
-    let steps = 2 + ((to - from).abs() * 22.0 * (radius / 18.0).max(1.0).sqrt()) as usize;
+    let steps = 2 + ((to - from).abs() * 22.0 * (radius / (0.5 * KNOB + 1.0)).max(1.0).sqrt()) as usize;
     let point = |step: usize| centre + radius * direction(from + (to - from) * step as f32 / steps as f32);
     painter.add(Shape::line((0..=steps).map(point).collect(), stroke));
 }
