@@ -189,10 +189,14 @@ impl Live {
     fn pass_on(&mut self, channel: u8, kind: EventKind) {
         self.tail.forget();
         let event = Event { frame: 0, channel, kind };
-        // The window shows keys and wheels also while nothing sounds.
-        self.repaint.request_repaint();
-        self.telemetry.note_event(&event);
+        self.note(&event);
         self.synth.handle(&event);
+    }
+
+    /// Publishes an event for the window, which shows keys and wheels also while nothing sounds.
+    fn note(&mut self, event: &Event) {
+        self.telemetry.note_event(event);
+        self.repaint.request_repaint();
     }
 
     /// Plays the window's touches at the first frame of the block. Offline they are discarded: a click must not get
@@ -268,9 +272,7 @@ impl Live {
         self.follow(params);
         self.follow_tuning();
         self.follow_touches();
-        for event in events {
-            self.telemetry.note_event(event);
-        }
+        events.iter().for_each(|event| self.note(event));
         self.synth.process(events, left, right);
         // This is also reported while no window is open: the program waits for silence before it ends.
         let synth = &self.synth;

@@ -76,8 +76,6 @@ use std::sync::LazyLock;
 #[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "elsewhere, tests need nothing"))]
 enum Needs {
     Nothing,
-    /// Time alone, for all cases of a test that otherwise goes through a part of them.
-    Time,
     /// A virtual screen (Xvfb).
     Screen,
     /// A screen, and a bus for screen readers.
@@ -86,14 +84,12 @@ enum Needs {
     Program,
     /// The Python hosts.
     Python,
-    /// The Python hosts, and time for all cases.
-    PythonAndTime,
     /// The Python hosts and a screen.
     PythonAndScreen,
 }
 
 impl Needs {
-    /// Whether tests with these needs take long, or wait for time to pass: what is on a screen comes when it comes.
+    /// Whether tests with these needs wait for time to pass: what is on a screen comes when it comes.
     fn wait(self) -> bool {
         !matches!(self, Needs::Nothing | Needs::Python)
     }
@@ -109,15 +105,33 @@ impl Needs {
         static SCREEN: LazyLock<Option<String>> = LazyLock::new(screen::missing);
         static PYTHON: LazyLock<Option<String>> = LazyLock::new(vst3::missing);
         match self {
-            Needs::Nothing | Needs::Time => None,
+            Needs::Nothing => None,
             Needs::Screen => SCREEN.clone(),
             Needs::ScreenReader => screen_reader::missing().or_else(|| SCREEN.clone()),
             Needs::Program => standalone::missing().or_else(|| SCREEN.clone()),
-            Needs::Python | Needs::PythonAndTime => PYTHON.clone(),
+            Needs::Python => PYTHON.clone(),
             Needs::PythonAndScreen => PYTHON.clone().or_else(|| SCREEN.clone()),
         }
     }
 }
+
+/// Tests that go through a part of their cases, and through all of them in the long suite.
+const IN_FULL: [&str; 14] = [
+    "fuzz::random_events_give_clean_sound_at_every_rate",
+    "fuzz::random_events_sound_the_same_in_all_blocks",
+    "fuzz::random_settings_sound_clean",
+    "lifecycle::every_rate_and_block_size_plays",
+    "resonator::a_held_chord_has_the_bits_of_the_command",
+    "song::one_channel_has_the_bits_of_the_command",
+    "song::an_mpe_performance_has_the_bits_of_the_command",
+    "song::a_kit_has_the_bits_of_the_command",
+    "song::sound_that_comes_in_has_the_bits_of_the_command",
+    "song::sixteen_channels_have_the_bits_of_one_synth",
+    "state::what_is_saved_comes_back_to_the_byte",
+    "state::two_states_in_turn_while_audio_runs_are_never_mixed",
+    "vst3::one_channel_has_the_bits_of_the_command",
+    "vst3::what_is_saved_comes_back",
+];
 
 /// Makes the list of tests from their modules and names, with the needs of each module.
 macro_rules! trials {
@@ -258,28 +272,6 @@ fn main() -> ExitCode {
             silence_gives_silence_after_the_tail
             at_a_mix_of_0_the_sound_is_as_it_was
         }
-        Time: fuzz {
-            random_events_give_clean_sound_at_every_rate
-            random_events_sound_the_same_in_all_blocks
-            random_settings_sound_clean
-        }
-        Time: lifecycle {
-            every_rate_and_block_size_plays
-        }
-        Time: resonator {
-            a_held_chord_has_the_bits_of_the_command
-        }
-        Time: song {
-            one_channel_has_the_bits_of_the_command
-            an_mpe_performance_has_the_bits_of_the_command
-            a_kit_has_the_bits_of_the_command
-            sound_that_comes_in_has_the_bits_of_the_command
-            sixteen_channels_have_the_bits_of_one_synth
-        }
-        Time: state {
-            what_is_saved_comes_back_to_the_byte
-            two_states_in_turn_while_audio_runs_are_never_mixed
-        }
         Nothing: vst3_state {
             parameters_have_the_numbers_of_their_ids
             states_of_all_versions_load
@@ -359,10 +351,6 @@ fn main() -> ExitCode {
         Screen: storm {
             the_window_comes_and_goes_while_parameters_are_automated
         }
-        PythonAndTime: vst3 {
-            one_channel_has_the_bits_of_the_command
-            what_is_saved_comes_back
-        }
         Python: vst3 {
             every_parameter_can_be_set_and_read
             one_channel_has_the_bits_of_the_command
@@ -376,21 +364,24 @@ fn main() -> ExitCode {
             the_window_opens_and_closes_fifty_times
         }
     };
-    let trial = |(name, needs, test): (&str, Needs, fn())| {
-        let is_thorough = matches!(needs, Needs::Time | Needs::PythonAndTime);
-        let name = if is_thorough { format!("thorough::{name}") } else { name.to_owned() };
+    let trial = |(name, needs, test): (&str, Needs, fn()), in_full: bool| {
+        let name = if in_full { format!("thorough::{name}") } else { name.to_owned() };
         let run = move || match needs.missing() {
             Some(missing) => Err(format!("it needs {missing}, which ‘cargo xtask setup --all’ installs").into()),
             None => {
-                thorough::set(is_thorough);
+                thorough::set(in_full);
                 test();
                 Ok(())
             }
         };
-        Trial::test(name, run).with_ignored_flag(needs.wait())
+        Trial::test(name, run).with_ignored_flag(needs.wait() || in_full)
     };
-    let conclusion =
-        libtest_mimic::run(&Arguments::from_args(), everywhere.into_iter().chain(on_linux).map(trial).collect());
+    let tests: Vec<_> = everywhere.into_iter().chain(on_linux).collect();
+    let in_full: Vec<_> = tests.iter().filter(|(name, ..)| IN_FULL.contains(name)).copied().collect();
+    assert!(in_full.len() == IN_FULL.len() || !cfg!(target_os = "linux"), "each of them is a test");
+    let tests =
+        tests.into_iter().map(|test| trial(test, false)).chain(in_full.into_iter().map(|test| trial(test, true)));
+    let conclusion = libtest_mimic::run(&Arguments::from_args(), tests.collect());
     host::bundle::remove();
     conclusion.exit_code()
 }

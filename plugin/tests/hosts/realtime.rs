@@ -18,8 +18,9 @@ use std::process::{Command, ExitCode};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
-/// Minimum number of blocks played while the other threads work: each of the different ones twice; ten times beside the window.
-const BLOCKS: [u32; 2] = [200, 1_000];
+/// Minimum number of blocks played while the other threads work: each of the different ones twice; beside the window, ten times.
+const BLOCKS: u32 = 200;
+const BLOCKS_BESIDE_WINDOW: u32 = 1_000;
 
 /// Minimum number of rounds of the main thread, which loads a state in every tenth: each of them twice.
 const ROUNDS: usize = 140;
@@ -89,7 +90,7 @@ pub(crate) fn work(name: &str) -> ExitCode {
 fn play_under_watch(mut instance: Instance, parent: Option<Parent>) -> ExitCode {
     let is_effect = instance.parameters()[0].name == "Chord";
     let blocks = storm(&mut instance);
-    let least = BLOCKS[usize::from(parent.is_some())];
+    let least = if parent.is_some() { BLOCKS_BESIDE_WINDOW } else { BLOCKS };
     let mut states: Vec<Vec<u8>> = patches().iter().map(|(_, patch)| state(patch)).collect();
     states.insert(1, state_of_kit(&drums()));
     let Player { mut instance, mut audio } = instance.play(48_000.0, 64);

@@ -15,7 +15,7 @@ const AMBIENT: f32 = 0.2;
 const GLOSS: f32 = 0.3;
 /// Points across a tube: the share of its thickness above the middle, and its light.
 const ROUND: [[f32; 2]; 4] = [[0.5, 0.62], [0.22, 1.15], [-0.2, 0.6], [-0.5, 0.22]];
-/// Those across a bar: its upper side as one looks down on it, and the side in front.
+/// Those across a bar, which is twice as wide as thick: its upper side as one looks down on it, and the side in front.
 const FLAT: [[f32; 2]; 4] = [[1.25, 0.85], [-0.25, 1.1], [-0.25, 0.5], [-0.75, 0.38]];
 
 /// How many flat pieces a drum's shell has, and where its wires lie in front of and behind the middle of its head.

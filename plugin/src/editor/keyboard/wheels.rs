@@ -10,7 +10,7 @@ use egui::{Align2, EventFilter, Id, Key, Painter, Rect, Response, Sense, Ui, Wid
 /// Height of the names below, and thickness of the line where a wheel stands.
 const NAME: f32 = 14.0;
 const MARK: f32 = 3.0;
-/// Share of the way for one press of an arrow key.
+/// Share of the track for one press of an arrow key.
 const STEP: f32 = 0.05;
 
 /// A wheel: its name, what it does, where its track begins, and the touch that moves it.
@@ -19,6 +19,13 @@ struct Wheel {
     help: &'static str,
     lowest: f32,
     touch: fn(f32) -> Touch,
+}
+
+impl Wheel {
+    /// Whether it goes back to the middle when it is let go.
+    fn springs_back(&self) -> bool {
+        self.lowest < 0.0
+    }
 }
 
 const WHEELS: [Wheel; 2] = [
@@ -74,7 +81,6 @@ impl Wheels {
     /// Lets the user move a wheel that stands at `position`, by mouse or arrow keys. Returns where it stands then.
     fn turn(&mut self, ui: &Ui, response: &Response, number: usize, position: f32, link: &Link) -> f32 {
         let wheel = &WHEELS[number];
-        let springs_back = wheel.lowest < 0.0;
         let pointed = response.is_pointer_button_down_on().then(|| response.interact_pointer_pos()).flatten();
         let mut wanted = pointed.map(|at| {
             let track = response.rect.shrink2(vec2(0.0, MARK));
@@ -85,7 +91,7 @@ impl Wheels {
             let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
             ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
             let [up, down] = [Key::ArrowUp, Key::ArrowDown];
-            if springs_back {
+            if wheel.springs_back() {
                 let is_down = |key| ui.input(|input| input.key_down(key));
                 wanted = wanted.or(is_down(up).then_some(1.0)).or(is_down(down).then_some(-1.0));
             } else {
@@ -110,7 +116,7 @@ impl Wheels {
     /// Lets go of the wheel that is held: the pitch springs back.
     pub(crate) fn release(&mut self, link: &Link) {
         if let Some((number, _)) = self.held.take()
-            && WHEELS[number].lowest < 0.0
+            && WHEELS[number].springs_back()
         {
             link.play((WHEELS[number].touch)(0.0));
         }

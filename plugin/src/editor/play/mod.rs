@@ -46,6 +46,9 @@ const ESSENTIALS: [(Param, &str); 6] = [
 const SOURCES: [Source; 6] =
     [Source::Velocity, Source::Pressure, Source::Wheel, Source::Lfo1, Source::Envelope1, Source::Random];
 
+/// The title of the essential knobs, beside which these sources stand.
+const ESSENTIAL: &str = "ESSENTIALS";
+
 /// The state of the page.
 #[derive(Default)]
 pub(super) struct PlayPage {
@@ -164,7 +167,7 @@ fn knobs(ui: &mut Ui, rect: Rect, [title, side]: [f32; 2], shown: &Shown, contro
     let (added, essentials): (Vec<_>, Vec<_>) = essentials.partition(|(info, _)| controls.own(info).is_some());
     let (added, output) =
         if added.is_empty() { (added, vec![gain]) } else { ([added, vec![gain]].concat(), Vec::new()) };
-    let groups = [("MACROS", macros), (ADDED, added), ("ESSENTIALS", essentials), ("OUTPUT", output)];
+    let groups = [("MACROS", macros), (ADDED, added), (ESSENTIAL, essentials), ("OUTPUT", output)];
     let count: usize = groups.iter().map(|(_, knobs)| knobs.len()).sum();
     let spaces = groups.iter().filter(|(_, knobs)| !knobs.is_empty()).count().saturating_sub(1) as f32;
     let inside = rect.shrink(PADDING);
@@ -181,7 +184,7 @@ fn knobs(ui: &mut Ui, rect: Rect, [title, side]: [f32; 2], shown: &Shown, contro
             if title > 0.0 {
                 let place = Rect::from_min_size(corner, vec2(knobs.len() as f32 * width, title - 4.0));
                 let named = line(ui.painter(), place, Align2::LEFT_CENTER, name, SMALL, palette.muted);
-                if name == "ESSENTIALS" && shown.preset().is_some() {
+                if name == ESSENTIAL && shown.preset().is_some() {
                     let place = place.with_min_x(named.right() + 2.0 * GAP).with_max_x(place.right() + gap - GAP);
                     sources::show_line(ui, place, &SOURCES, shown, controls);
                 }

@@ -414,44 +414,6 @@ fn tags_narrow_the_list_together_and_go_with_another_family() {
     assert!(stage.harness.query_by_role_and_label(Role::ListItem, "Marimba").is_some());
 }
 
-/// The window while sounds are compared with the marimba.
-fn comparing() -> Stage {
-    let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
-    stage.button("Browse");
-    stage.type_text("marimba");
-    stage.button("Find sounds like this one");
-    stage
-}
-
-#[test]
-fn the_search_for_sounds_like_one_is_cancelled() {
-    let mut stage = comparing();
-    stage.button("Cancel the comparison");
-    let end = std::time::Instant::now() + std::time::Duration::from_secs(300);
-    while stage.harness.query_by_label("Cancel the comparison").is_some() {
-        assert!(std::time::Instant::now() < end, "the comparison ends");
-        stage.harness.run_steps(1);
-    }
-    assert!(stage.harness.query_by_label("Show Like Marimba").is_none(), "nothing was found");
-}
-
-#[test]
-#[ignore = "takes several seconds"]
-fn sounds_like_one_are_found_in_the_background() {
-    let mut stage = comparing();
-    let end = std::time::Instant::now() + std::time::Duration::from_secs(300);
-    while stage.harness.query_by_label("Show Like Marimba").is_none() {
-        assert!(std::time::Instant::now() < end, "the comparison ends");
-        std::thread::sleep(std::time::Duration::from_millis(100));
-        stage.harness.run_steps(1);
-    }
-    stage.harness.run_steps(2);
-    let listed: Vec<_> =
-        stage.harness.query_all_by_role(Role::ListItem).filter_map(|node| node.accesskit_node().label()).collect();
-    assert_eq!(listed[0], "Marimba", "nothing is nearer to it than itself: {listed:?}");
-    assert!(listed.iter().any(|name| name == "Resonator Marimba"), "{listed:?}");
-}
-
 #[test]
 fn the_sounds_that_were_chosen_last_are_listed_the_newest_first() {
     let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);

@@ -3,6 +3,7 @@
 mod animation;
 mod body_numbers;
 mod browsing;
+mod comparing;
 mod devices;
 mod dropped;
 mod empty;

@@ -33,7 +33,12 @@ impl Stage {
 
     /// Shows the window until something is so: folders are read in the background.
     fn until(&mut self, is_so: impl Fn(&Self) -> bool) {
-        let end = Instant::now() + Duration::from_secs(60);
+        self.within(60, is_so);
+    }
+
+    /// The same for what takes so many seconds at most.
+    pub(super) fn within(&mut self, seconds: u64, is_so: impl Fn(&Self) -> bool) {
+        let end = Instant::now() + Duration::from_secs(seconds);
         while !is_so(self) {
             assert!(Instant::now() < end, "it happens");
             std::thread::sleep(Duration::from_millis(5));

@@ -2,6 +2,7 @@
 
 mod header;
 mod host;
+mod keys;
 mod meter;
 mod presses;
 mod reach;
@@ -33,10 +34,10 @@ use crate::editor::picker::{Picked, Picker};
 use crate::editor::play::PlayPage;
 use crate::editor::routes::{carry, learn};
 use crate::editor::theme::layout::Layout;
-use crate::editor::theme::{Theme, ZOOMS, install_fonts};
+use crate::editor::theme::{Theme, install_fonts};
 use crate::lock::lock;
 use crate::params::SprungParams;
-use egui::{Event, Key, Modifiers, Ui};
+use egui::{Event, Key, Ui};
 pub(super) use header::Face;
 use header::{Header, Request};
 use meter::Meter;
@@ -367,7 +368,8 @@ impl Window {
         // In a plugin, the computer's keyboard belongs to the host.
         let is_alone = host.plugin_api() == PluginApi::Standalone;
         let is_typing = ui.ctx().egui_wants_keyboard_input();
-        let by_key = is_alone.then(|| asked_by_key(self.over, view.zoom, is_typing, ui)).flatten();
+        let is_list = matches!(self.over, Some(Over::Browser | Over::Files));
+        let by_key = is_alone.then(|| keys::asked(is_list, view.zoom, is_typing, ui)).flatten();
         let played = is_alone.then(|| self.computer_keyboard.follow(ui, params.link())).flatten();
         let bound = binding::follow(ui, self.browser.library(), &mut controls);
         let learnt = bound.or_else(|| learn::follow(ui, &mut controls));
@@ -426,36 +428,4 @@ impl Window {
             self.news = Some(Ok(String::new()));
         }
     }
-}
-
-/// What the computer's keys ask for, in the program alone.
-fn asked_by_key(over: Option<Over>, zoom: u32, is_typing: bool, ui: &Ui) -> Option<Request> {
-    let larger = ZOOMS.into_iter().find(|other| *other > zoom).unwrap_or(zoom);
-    let smaller = ZOOMS.into_iter().rev().find(|other| *other < zoom).unwrap_or(zoom);
-    // With Shift first: a shortcut without it is also found with it.
-    let shortcuts = [
-        (Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, Request::Redo),
-        (Modifiers::COMMAND, Key::Y, Request::Redo),
-        (Modifiers::COMMAND, Key::Z, Request::Undo),
-        (Modifiers::COMMAND, Key::Num0, Request::Zoom(100)),
-        (Modifiers::COMMAND, Key::Plus, Request::Zoom(larger)),
-        (Modifiers::COMMAND, Key::Equals, Request::Zoom(larger)),
-        (Modifiers::COMMAND, Key::Minus, Request::Zoom(smaller)),
-        (Modifiers::NONE, Key::F1, Request::Manual),
-        (Modifiers::NONE, Key::Slash, Request::Browse),
-    ];
-    // A field that is typed into has steps of its own, and a text may have a slash.
-    let is_typed = |request: &Request| is_typing && matches!(request, Request::Undo | Request::Redo | Request::Browse);
-    let found = shortcuts.into_iter().find(|(modifiers, key, request)| {
-        !is_typed(request) && ui.input_mut(|input| input.consume_key(*modifiers, *key))
-    });
-    let request = found.map(|(_, _, request)| request)?;
-    let is_taken = match request {
-        // A list of sounds that is open is not closed by it, and a path begins with it.
-        Request::Browse => matches!(over, Some(Over::Browser | Over::Files)),
-        // What is being dragged is no step yet: the one before would go from under it.
-        Request::Undo | Request::Redo => ui.input(|input| input.pointer.any_down()),
-        _ => false,
-    };
-    (!is_taken).then_some(request)
 }
