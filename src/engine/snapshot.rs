@@ -4,7 +4,7 @@ use super::note::Note;
 use super::voice::SynthVoice;
 use crate::dsp::mode_bank::MAX_MODES;
 use crate::params::Param;
-use crate::patch::routes::MAX_ROUTES;
+use crate::patch::routes::{MAX_ROUTES, Route, Source};
 use crate::units::db_from_gain;
 
 /// Maximum number of notes in a snapshot.
@@ -26,6 +26,19 @@ pub struct SoundingNote {
     /// Parameters that its routes and its own offsets modulate, with their current values. A parameter that only strikes
     /// read has the value of the last strike.
     pub moved: [Option<(Param, f32)>; MAX_ROUTES],
+    /// The values of the sources, in the order of [`Source::ALL`], as routes read them. Those that no route reads may be old.
+    pub sources: [f32; Source::ALL.len()],
+    /// How far the three oscillators are in their cycle, 0–1, and the two envelopes: the number of the stage (delay, attack, hold,
+    /// decay, sustain, release; 6 when over) and the share of it that has passed.
+    pub progress: [f32; 5],
+}
+
+impl SoundingNote {
+    /// By how much of its destination's travel a route with this amount in per cent moves it now. Real-time safe.
+    pub fn travel(&self, route: &Route, amount: f32) -> f32 {
+        let scale = route.scale.map_or(1.0, |scale| self.sources[scale as usize]);
+        0.01 * amount * route.response.apply(self.sources[route.source as usize]) * scale
+    }
 }
 
 /// The state of one mass, or the sum over the voices that have the same mode.
@@ -91,6 +104,8 @@ impl Snapshot {
             velocity: note.velocity,
             pitch,
             age,
+            sources: voice.sources(),
+            progress: voice.progress(),
             ..Default::default()
         };
         let mut count = 0;
@@ -171,6 +186,28 @@ mod tests {
             |found: [f32; 4], expected: [f32; 4]| found.iter().zip(expected).all(|(one, two)| (one - two).abs() < 1e-3);
         assert!(near(moved(&first), [45.0, 10.0, 90.0, 100.0]), "{:?}", moved(&first));
         assert!(near(moved(&newest), [32.5, 60.0, 90.0, 100.0]), "{:?}", moved(&newest));
+        let source = |note: &SoundingNote, source| note.sources[source as usize];
+        assert_eq!([Source::Velocity, Source::Wheel].map(|of| source(&newest, of)), [0.25, 1.0]);
+        let by = Route { scale: Some(Source::Velocity), ..Route::linear(Source::Wheel, Param::Pan) };
+        assert!((newest.travel(&by, -40.0) + 0.1).abs() < 1e-6, "{}", newest.travel(&by, -40.0));
+    }
+
+    #[test]
+    fn notes_tell_how_far_oscillators_and_envelopes_are() {
+        let mut patch = Patch::default().with(Param::Lfo2Rate, 5.0).with(Param::Envelope1Attack, 0.1);
+        for (place, source) in [Source::Lfo2, Source::Envelope1].into_iter().enumerate() {
+            patch.routes.set(place, Some(Route::linear(source, Param::Pan)));
+        }
+        let mut ensemble = Ensemble::new(48_000.0, 0, &patch, &[]);
+        let (mut left, mut right) = ([0.0; 2400], [0.0; 2400]);
+        ensemble.process(&[Event::note_on(0, 60, 1.0)], &mut left, &mut right);
+        let Some(note) = ensemble.snapshot().notes[0] else { panic!("it sounds") };
+        // A quarter of a cycle, and half of the attack, which is stage 1.
+        let near = |found: f32, expected: f32| (found - expected).abs() < 0.02;
+        assert!(near(note.progress[1], 0.25) && near(note.progress[3], 1.5), "{:?}", note.progress);
+        let value = |source| note.sources[source as usize];
+        assert!(near(value(Source::Lfo2), 1.0), "{:?}", note.sources);
+        assert!((0.3..0.9).contains(&value(Source::Envelope1)), "{:?}", note.sources);
     }
 
     #[test]

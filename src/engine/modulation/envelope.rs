@@ -101,6 +101,11 @@ impl Envelope {
         }
     }
 
+    /// The number of the stage and the share of it that has passed. A stage that does not end by itself is at its beginning.
+    pub(crate) fn progress(&self, times: &Times) -> f32 {
+        f32::from(self.stage as u8) + ((self.passed * times.rates[self.stage as usize]) as f32).min(0.999)
+    }
+
     /// The present level, 0–1.
     pub(crate) fn level(&self, times: &Times) -> f32 {
         let towards = |target: f32, from: f32| {

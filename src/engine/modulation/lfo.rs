@@ -31,6 +31,11 @@ impl Lfo {
         Self { phase: phase - whole as f64, cycle: self.cycle.wrapping_add(whole as u64), ..*self }
     }
 
+    /// Its phase, 0–1 of a cycle.
+    pub(crate) fn phase(&self) -> f32 {
+        self.phase as f32
+    }
+
     /// Its value, −1 to 1.
     pub(crate) fn value(&self, shape: Shape) -> f32 {
         let phase = self.phase as f32;

@@ -3,8 +3,8 @@
 use super::bus::{Bus, places};
 use super::destination::Target;
 use super::envelope::Times;
-use super::link::{Amounts, Mover, Offsets, SOURCES_AT_REST, Sources, bit};
-use super::moving::Moving;
+use super::link::{Amounts, Mover, Offsets, SOURCES, SOURCES_AT_REST, Sources, bit};
+use super::moving::{ENVELOPES, Moving};
 use super::settings::{LFOS, Settings, SharedLfos, of_lfo};
 use crate::dsp::random;
 use crate::params::{Choice, Param, Scope};
@@ -192,6 +192,16 @@ impl Modulators {
             };
             tell(destination.param, value);
         }
+    }
+
+    /// The values of all sources.
+    pub(crate) fn sources(&self) -> [f32; SOURCES] {
+        std::array::from_fn(|source| self.sources[source])
+    }
+
+    /// How far oscillators and envelopes are.
+    pub(crate) fn progress(&self) -> [f32; LFOS + ENVELOPES] {
+        self.moving.progress()
     }
 
     /// Sets the note's brightness between the setup of the strike and its first frame, and computes the strike's offsets

@@ -84,6 +84,15 @@ impl Moving {
         envelopes.zip(&self.times).for_each(|(envelope, times)| envelope.release(times));
     }
 
+    /// How far the oscillators are in their cycle, and the envelopes in their stages.
+    pub(super) fn progress(&self) -> [f32; LFOS + ENVELOPES] {
+        let state = &self.states[self.now];
+        let lfos = state.lfos.iter().map(Lfo::phase);
+        let mut all =
+            lfos.chain(state.envelopes.iter().zip(&self.times).map(|(envelope, times)| envelope.progress(times)));
+        std::array::from_fn(|_| all.next().unwrap_or_default())
+    }
+
     /// Copies the phases of the instrument's oscillators to those that are shared.
     pub(super) fn share(&mut self, shared: &SharedLfos) {
         for (index, common) in shared.0.iter().enumerate().filter(|(index, _)| self.are_shared[*index]) {

@@ -3,7 +3,7 @@
 use crate::engine::atomic::AtomicF32;
 use crate::engine::snapshot::{SHOWN_NOTES, SoundingNote};
 use crate::params::{PARAMS, Param};
-use crate::patch::routes::MAX_ROUTES;
+use crate::patch::routes::{MAX_ROUTES, Source};
 use std::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 use std::sync::atomic::{AtomicU32, AtomicU64, fence};
 
@@ -28,6 +28,8 @@ struct Cell {
     age: AtomicF32,
     /// The number of the parameter plus 1, and below it the bits of its value; 0 for none.
     moved: [AtomicU64; MAX_ROUTES],
+    sources: [AtomicF32; Source::ALL.len()],
+    progress: [AtomicF32; 5],
 }
 
 impl Sounding {
@@ -70,6 +72,8 @@ impl Cell {
             let packed = |(param, value): (Param, f32)| (1 + param as u64) << 32 | u64::from(value.to_bits());
             cell.store(moved.map_or(0, packed), Relaxed);
         }
+        self.sources.iter().zip(note.sources).for_each(|(cell, value)| cell.store(value));
+        self.progress.iter().zip(note.progress).for_each(|(cell, value)| cell.store(value));
     }
 
     fn read(&self) -> Option<SoundingNote> {
@@ -81,7 +85,9 @@ impl Cell {
         });
         let (channel, key) = ((key >> 8) as u8, key as u8);
         let (velocity, pitch, age) = (self.velocity.load(), self.pitch.load(), self.age.load());
-        Some(SoundingNote { channel, key, velocity, pitch, age, moved })
+        let (sources, progress) =
+            (self.sources.each_ref().map(AtomicF32::load), self.progress.each_ref().map(AtomicF32::load));
+        Some(SoundingNote { channel, key, velocity, pitch, age, moved, sources, progress })
     }
 }
 
@@ -95,7 +101,9 @@ mod tests {
     fn notes(number: u8) -> [Option<SoundingNote>; SHOWN_NOTES] {
         let value = f32::from(number);
         let moved = std::array::from_fn(|_| Some((PARAMS[usize::from(number)].param, value)));
-        let note = SoundingNote { channel: number % 16, key: number, velocity: value, pitch: value, age: value, moved };
+        let (sources, progress) = ([value; Source::ALL.len()], [value; 5]);
+        let (channel, key, velocity, pitch, age) = (number % 16, number, value, value, value);
+        let note = SoundingNote { channel, key, velocity, pitch, age, moved, sources, progress };
         [Some(note); SHOWN_NOTES]
     }
 

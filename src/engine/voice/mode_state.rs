@@ -5,6 +5,7 @@ use super::separation::{SeparateStrike, Separation};
 use crate::dsp::cells::Cells;
 use crate::engine::note::Note;
 use crate::params::Param;
+use crate::patch::routes::Source;
 
 /// A mode of a sounding voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +63,16 @@ impl SynthVoice {
     pub(crate) fn each_moved(&self, mut tell: impl FnMut(Param, f32)) {
         self.modulators.each_value(&mut tell);
         self.modulation.each_value(tell);
+    }
+
+    /// The values of the sources of its routes, as of [`SoundingNote::sources`].
+    pub(crate) fn sources(&self) -> [f32; Source::ALL.len()] {
+        self.modulators.sources()
+    }
+
+    /// How far its oscillators and envelopes are, as of [`SoundingNote::progress`].
+    pub(crate) fn progress(&self) -> [f32; 5] {
+        self.modulators.progress()
     }
 
     /// Whether mallet, pluck or noise still act.
