@@ -5,6 +5,7 @@ use egui::{Id, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo};
 use sprung::params::{Param, ParamInfo};
 use sprung::patch::Patch;
 use sprung::patch::routes::amount_param;
+use sprung_picture::play::{EXCITERS, Exciter};
 
 /// A part of the sound that can be off.
 pub(crate) struct Lamp {
@@ -24,28 +25,24 @@ const fn lamp(section: &'static str, param: Param, on: f32, help: &'static str) 
     Lamp { section, param, also: None, on, help }
 }
 
+/// The lamp of an exciter.
+const fn mover(exciter: &Exciter, help: &'static str) -> Lamp {
+    let Exciter { section, level, also, on } = *exciter;
+    Lamp { section, param: level, also, on, help }
+}
+
 /// What moves the body.
-pub(crate) const MOVERS: [Lamp; 6] = [
-    lamp("Mallet", Param::MalletLevel, 0.0, "A mallet strikes it."),
-    lamp("Pluck", Param::PluckLevel, 0.0, "A finger or a plectrum pulls it aside and lets go."),
-    Lamp {
-        also: Some(Param::NoiseHeld),
-        ..lamp("Noise", Param::NoiseLevel, -6.0, "A burst of noise, or noise that lasts: a brush, a scrape, breath.")
-    },
-    lamp("Bow", Param::BowLevel, 0.0, "A bow, for as long as a key is held."),
-    lamp(
-        "Breath",
-        Param::BreathLevel,
-        -18.0,
-        "Breath through a reed, lips or a flute’s jet, for as long as a key is held.",
-    ),
-    lamp(
-        "Input",
-        Param::InputLevel,
-        0.0,
-        "Incoming sound drives it while a key is held. Nothing sounds unless the host sends it sound.",
-    ),
-];
+pub(crate) const MOVERS: [Lamp; 6] = {
+    let [mallet, pluck, noise, bow, breath, input] = &EXCITERS;
+    [
+        mover(mallet, "A mallet strikes it."),
+        mover(pluck, "A finger or a plectrum pulls it aside and lets go."),
+        mover(noise, "A burst of noise, or noise that lasts: a brush, a scrape, breath."),
+        mover(bow, "A bow, for as long as a key is held."),
+        mover(breath, "Breath through a reed, lips or a flute’s jet, for as long as a key is held."),
+        mover(input, "Incoming sound drives it while a key is held. Nothing sounds unless the host sends it sound."),
+    ]
+};
 
 /// What touches the body, and what its sound passes through.
 const OTHERS: [Lamp; 6] = [

@@ -5,6 +5,7 @@
 mod figure;
 mod form;
 mod origin;
+pub mod play;
 mod shape;
 mod surface;
 mod swing;

@@ -2,7 +2,11 @@
 
 use sprung::internals::editor::{FIELDS, LINK_FIELDS};
 use sprung::sound::bodies::Body;
+use sprung::units::{note_name, number_in_unit, parse_key};
 use sprung_picture::Origin;
+
+/// A4 in Hz with which a typed frequency becomes a key.
+const A4: f64 = 440.0;
 
 /// One of two bodies, or the joint between them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,52 +27,61 @@ pub(super) struct Number {
     pub(super) value: f64,
 }
 
-/// Help texts of the numbers, by their names in files.
-const HELP: [(&str, &str); 41] = [
-    ("frequency", "The frequency at which losses are computed; of a body that does not follow the keys, its pitch."),
+/// The numbers by their names in files, with the names that are shown, and help texts.
+const ABOUT: [(&str, &str, &str); 41] = [
+    (
+        "frequency",
+        "Frequency",
+        "The frequency at which losses are computed; of a body that does not follow the keys, its pitch.",
+    ),
     (
         "length",
+        "Length",
         "Length, of round bodies the diameter. Sets the pitch at which losses are computed, and a string’s stiffness.",
     ),
-    ("thickness", "Thickness, of strings and tubes the diameter."),
-    ("tension", "Force that stretches it."),
-    ("material_density", "Mass of the material per volume."),
-    ("young", "Stiffness of the material."),
-    ("poisson", "How much thinner the material gets when it is stretched."),
-    ("loss_b0", "Loss of all modes alike: T60 is 6.9 divided by it."),
-    ("loss_b1", "Loss that rises with frequency: high modes ring shorter."),
-    ("loss_power", "How steeply that loss rises with frequency."),
-    ("damping", "Multiplies all losses: a cloth on it, or better suspension."),
-    ("strike", "Where it is struck. Modes with a node there stay silent."),
-    ("strike_y", "Where it is struck: around a round body, or along the other side of a plate."),
-    ("pickup", "Where it is heard. Modes with a node there stay silent."),
-    ("pickup_y", "Where it is heard: around a round body, or along the other side of a plate."),
-    ("joint", "Where it is joined to the other body."),
-    ("joint_y", "Where it is joined: around a round body, or along the other side of a plate."),
-    ("inharmonicity", "Stiffness that stretches the partials: a piano’s below 0.001, metal from 0.01."),
-    ("split", "Distance of the two modes of a pair, which beat."),
-    ("spread", "Random deviation of each mode: hand-made metal."),
-    ("tilt", "Level per octave above the pitch: darker below 0."),
-    ("pan", "Random place of each mode between left and right."),
-    ("strike_share", "Share of mallet and pluck in what moves it; noise has the rest."),
-    ("count", "Most modes. More are richer, and cost more."),
-    ("seed", "Which random numbers: another specimen of the same kind."),
-    ("aspect", "Length of one side over that of the other."),
-    ("truncation", "What is cut off at the apex, over what remains."),
-    ("slenderness", "Height over radius."),
-    ("head_radius", "Radius of the head."),
-    ("head_density", "Mass of the head per area."),
-    ("kettle_volume", "Air that is shut in below the head."),
-    ("low", "The lowest mode, as a multiple of the frequency."),
-    ("high", "The highest mode, as a multiple of the frequency."),
-    ("mode_density", "How the modes lie: 0 evenly, above it denser towards the high ones."),
-    ("stiffness", "The spring between the bodies, as the frequency at which the first would swing on it."),
-    ("mass", "Mass of the second body over that of the first."),
-    ("struck", "Share of a strike that falls on the second body."),
-    ("heard", "Share of the second body in what is heard."),
-    ("polarisation", "How much the first body also swings across the joint, where it decays slowly."),
-    ("lowest", "The lowest key with modes of its own."),
-    ("highest", "The highest key with modes of its own."),
+    ("thickness", "Thickness", "Thickness, of strings and tubes the diameter."),
+    ("tension", "Tension", "Force that stretches it."),
+    ("material_density", "Density of material", "Mass of the material per volume."),
+    ("young", "Young’s modulus", "Stiffness of the material."),
+    ("poisson", "Poisson’s ratio", "How much thinner the material gets when it is stretched."),
+    ("loss_b0", "Loss of all modes", "Loss of all modes alike: T60 is 6.9 divided by it."),
+    ("loss_b1", "Loss of high modes", "Loss that rises with frequency: high modes ring shorter."),
+    ("loss_power", "Rise of that loss", "How steeply that loss rises with frequency."),
+    ("damping", "Damping", "Multiplies all losses: a cloth on it, or better suspension."),
+    ("strike", "Strike place", "Where it is struck. Modes with a node there stay silent."),
+    ("strike_y", "Strike, across", "Where it is struck: around a round body, or along the other side of a plate."),
+    ("pickup", "Pickup place", "Where it is heard. Modes with a node there stay silent."),
+    ("pickup_y", "Pickup, across", "Where it is heard: around a round body, or along the other side of a plate."),
+    ("joint", "Joint place", "Where it is joined to the other body."),
+    ("joint_y", "Joint, across", "Where it is joined: around a round body, or along the other side of a plate."),
+    (
+        "inharmonicity",
+        "Inharmonicity",
+        "Stiffness that stretches the partials: a piano’s below 0.001, metal from 0.01.",
+    ),
+    ("split", "Split of pairs", "Distance of the two modes of a pair, which beat."),
+    ("spread", "Spread of modes", "Random deviation of each mode: hand-made metal."),
+    ("tilt", "Tilt", "Level per octave above the pitch: darker below 0."),
+    ("pan", "Stereo spread", "Random place of each mode between left and right."),
+    ("strike_share", "Share of strikes", "Share of mallet and pluck in what moves it; noise has the rest."),
+    ("count", "Number of modes", "Most modes. More are richer, and cost more."),
+    ("seed", "Specimen", "Which random numbers: another specimen of the same kind."),
+    ("aspect", "Ratio of sides", "Length of one side over that of the other."),
+    ("truncation", "Cut at the apex", "What is cut off at the apex, over what remains."),
+    ("slenderness", "Slenderness", "Height over radius."),
+    ("head_radius", "Head radius", "Radius of the head."),
+    ("head_density", "Density of head", "Mass of the head per area."),
+    ("kettle_volume", "Kettle volume", "Air that is shut in below the head."),
+    ("low", "Lowest mode", "The lowest mode, as a multiple of the frequency."),
+    ("high", "Highest mode", "The highest mode, as a multiple of the frequency."),
+    ("mode_density", "Crowding of modes", "How the modes lie: 0 evenly, above it denser towards the high ones."),
+    ("stiffness", "Stiffness", "The spring between the bodies, as the frequency at which the first would swing on it."),
+    ("mass", "Mass of second", "Mass of the second body over that of the first."),
+    ("struck", "Struck on second", "Share of a strike that falls on the second body."),
+    ("heard", "Heard of second", "Share of the second body in what is heard."),
+    ("polarisation", "Polarisation", "How much the first body also swings across the joint, where it decays slowly."),
+    ("lowest", "Lowest key", "The lowest key with modes of its own."),
+    ("highest", "Highest key", "The highest key with modes of its own."),
 ];
 
 impl Part {
@@ -126,24 +139,31 @@ impl Part {
 }
 
 impl Number {
-    /// Its name as shown to the user.
-    pub(super) fn title(&self) -> String {
-        let mut name = self.name.replace('_', " ");
-        name[..1].make_ascii_uppercase();
-        name
-    }
-
-    /// Its help text.
-    pub(super) fn help(&self) -> &'static str {
+    /// Its name as shown to the user, and its help text.
+    pub(super) fn about(&self) -> [&'static str; 2] {
         // The damping of a joint differs from that of a body.
         if self.name == "damping" && self.range[0] == 0.0 {
-            return "Damping between the bodies, as a share of the critical one.";
+            return ["Damping", "Damping between the bodies, as a share of the critical one."];
         }
-        HELP.iter().find(|(name, _)| *name == self.name).map_or("", |(_, help)| help)
+        ABOUT.iter().find(|(name, ..)| *name == self.name).map_or([self.name, ""], |(_, title, help)| [title, help])
+    }
+
+    /// A value as text: a key as a note, others in few letters and with their unit.
+    pub(super) fn written(&self, value: f64) -> String {
+        if self.is_key() { note_name(value as u8) } else { written(value, self.unit) }
+    }
+
+    /// The value of a text.
+    pub(super) fn read(&self, text: &str) -> Option<f64> {
+        if self.is_key() { parse_key(text, A4).ok() } else { number_in_unit(self.unit, text) }
+    }
+
+    fn is_key(&self) -> bool {
+        ["lowest", "highest"].contains(&self.name)
     }
 
     pub(super) fn is_whole(&self) -> bool {
-        ["count", "seed", "lowest", "highest"].contains(&self.name)
+        self.is_key() || ["count", "seed"].contains(&self.name)
     }
 
     /// The change for each pixel that the mouse is dragged.
@@ -185,7 +205,6 @@ pub(crate) fn written(value: f64, unit: &str) -> String {
 mod tests {
     use super::*;
     use sprung::sound::bodies::Model;
-    use sprung::units::number_in_unit;
 
     #[test]
     fn numbers_that_are_written_can_be_read() {
@@ -202,12 +221,19 @@ mod tests {
     }
 
     #[test]
+    fn keys_are_written_as_notes_and_read_as_notes_or_numbers() {
+        let key = Number { name: "lowest", unit: "", range: [0.0, 127.0], value: 36.0 };
+        assert_eq!(key.written(36.0), "C2");
+        assert_eq!(["C2", "36", "x"].map(|text| key.read(text)), [Some(36.0), Some(36.0), None]);
+    }
+
+    #[test]
     fn every_number_is_explained_and_can_be_set() {
         let names = || FIELDS.iter().map(|field| field.name).chain(LINK_FIELDS.iter().map(|field| field.name));
         for name in names() {
-            assert!(HELP.iter().any(|(known, _)| *known == name), "{name}");
+            assert!(ABOUT.iter().any(|(known, ..)| *known == name), "{name}");
         }
-        for (name, _) in HELP {
+        for (name, ..) in ABOUT {
             assert!(names().any(|known| known == name), "{name}");
         }
         for (_, model) in Model::ALL {

@@ -1,7 +1,7 @@
 //! The page of the body: its model, material and numbers, and those of a second body and of their joint.
 
 use super::edit::BodyEdit;
-use super::numbers::{Number, Part, written};
+use super::numbers::{Number, Part};
 use super::offer::{offer, offer_pad};
 use super::origin::OriginShown;
 use crate::editor::controls::Controls;
@@ -16,7 +16,6 @@ use crate::link::Link;
 use egui::{Align2, Id, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use sprung::internals::editor::LINK_KINDS;
 use sprung::sound::bodies::{MATERIALS, Model};
-use sprung::units::number_in_unit;
 use sprung_picture::{Origin, model_name};
 
 /// Width of the part with model and material.
@@ -214,7 +213,7 @@ impl BodyPage {
                 if response.changed() && value != number.value {
                     let mut changed = self.edit.as_ref().map_or(origin, BodyEdit::origin).clone();
                     self.part.set(&mut changed, number.name, value);
-                    let what = format!("{} {}", number.title(), written(value, number.unit));
+                    let what = format!("{} {}", number.about()[0], number.written(value));
                     let edit = self.edit.get_or_insert_with(|| BodyEdit::begin(origin, shown.loaded(), controls));
                     edit.change(changed, what);
                 }
@@ -234,16 +233,16 @@ impl BodyPage {
 
 /// Shows a number. Returns its new value.
 fn show(ui: &mut Ui, cell: Rect, number: &Number, controls: &mut Controls) -> (Response, f64) {
-    let (title, unit) = (number.title(), number.unit);
+    let [title, help] = number.about();
     let field = number::Number {
-        title: &title,
-        help: number.help(),
+        title,
+        help,
         value: number.value,
         range: number.range,
         speed: number.speed(),
         is_whole: number.is_whole(),
-        written: &|value| written(value, unit),
-        read: &|text| number_in_unit(unit, text),
+        written: &|value| number.written(value),
+        read: &|text| number.read(text),
     };
     field.show(ui, cell, controls)
 }

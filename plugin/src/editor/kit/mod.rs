@@ -21,7 +21,7 @@ use crate::loaded::Loaded;
 use detail::Detail;
 use edit::{SECOND, change, copy, name_of, put, set, swap, take};
 use egui::{Align2, Rect, Ui, pos2, vec2};
-use pads::{Carried, Deed, Pads};
+use pads::{Carried, Deed, Pads, ROWS};
 use sounds::SoundList;
 use sprung::preset::{Playable, Preset};
 use sprung::units::note_name;
@@ -126,7 +126,7 @@ impl KitPage {
         }
         let inner = middle.shrink(PADDING);
         let (head, below) = inner.split_top_bottom_at_y(inner.top() + HEAD);
-        let request = self.head(ui, head, controls);
+        let request = self.head(ui, head, shown, controls);
         let clicked = self.sounds.show(ui, list.shrink(PADDING), browser.sounds(), controls);
         let key = self.pads.chosen();
         let figures = self.figures.of(shown);
@@ -150,7 +150,7 @@ impl KitPage {
     }
 
     /// Shows which pads are seen, and buttons to see others.
-    fn head(&mut self, ui: &Ui, rect: Rect, controls: &mut Controls) -> Option<Request> {
+    fn head(&mut self, ui: &Ui, rect: Rect, shown: &Shown, controls: &mut Controls) -> Option<Request> {
         let palette = controls.palette;
         let rect = rect.with_max_y(rect.bottom() - 4.0);
         let cell = |left: f32, width: f32| Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()));
@@ -166,12 +166,21 @@ impl KitPage {
         let range = format!("{} to {}", note_name(lowest), note_name(highest));
         line(ui.painter(), cell(rect.left() + 26.0, 84.0), Align2::CENTER_CENTER, &range, TEXT, palette.muted);
         let help = cell(rect.right() - 22.0, 22.0);
-        let keys = cell(help.left() - 40.0, 38.0);
-        let pads = cell(keys.left() - 40.0, 38.0);
-        for (at, text, is_keys) in [(pads, "Pads", false), (keys, "Keys", true)] {
-            if tab(ui, at, text, self.shows_keys == is_keys, palette).clicked() {
+        let [few, many] = ROWS;
+        for (place, (text, row)) in
+            [("Keys", None), ("8 × 8", Some(many)), ("4 × 4", Some(few))].into_iter().enumerate()
+        {
+            let at = cell(help.left() - 38.0 * (place + 1) as f32, 37.0);
+            let is_shown = if self.shows_keys { row.is_none() } else { row == Some(self.pads.row()) };
+            if tab(ui, at, text, is_shown, palette).clicked() {
                 self.release(controls.params.link());
-                self.shows_keys = is_keys;
+                self.shows_keys = row.is_none();
+                if let Some(row) = row {
+                    // The many begin with the kit's first pad, the few with what is chosen.
+                    let chosen = self.pads.chosen();
+                    let first = shown.kit().and_then(|kit| kit.pads.first()).map_or(chosen, |(key, _)| *key);
+                    self.pads.show_rows(row, if row == many { first } else { chosen });
+                }
             }
         }
         help_tab(ui, help, "kits", controls).then_some(Request::Manual)

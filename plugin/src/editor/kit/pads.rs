@@ -1,4 +1,4 @@
-//! Sixteen pads as four rows of four: they play, are chosen, and are dragged onto each other.
+//! Pads as four rows of four or eight of eight: they play, are chosen, and are dragged onto each other.
 
 use super::edit::name_of;
 use super::keys::about;
@@ -20,9 +20,10 @@ use sprung::units::note_name;
 use sprung_picture::Figure;
 use std::sync::Arc;
 
-/// Pads in a row, and in all.
-const ROW: u8 = 4;
-const COUNT: u8 = ROW * ROW;
+/// Pads in a row of the few and of the many.
+pub(super) const ROWS: [u8; 2] = [4, 8];
+/// Width of a pad below which it has no name.
+const NAMED: f32 = 60.0;
 /// The gains at the ends of a pad's bar, in dB.
 const GAINS: [f32; 2] = [-36.0, 12.0];
 
@@ -45,6 +46,8 @@ pub(super) enum Deed {
 
 /// The state of the pads.
 pub(super) struct Pads {
+    /// Pads in a row.
+    row: u8,
     /// The key of the first pad.
     first: u8,
     /// The key of the chosen pad.
@@ -54,7 +57,7 @@ pub(super) struct Pads {
 
 impl Default for Pads {
     fn default() -> Self {
-        Self { first: super::edit::FIRST, chosen: super::edit::FIRST, held: HeldKey::default() }
+        Self { row: ROWS[0], first: super::edit::FIRST, chosen: super::edit::FIRST, held: HeldKey::default() }
     }
 }
 
@@ -67,14 +70,25 @@ impl Pads {
     /// Chooses a pad, and shows it.
     pub(super) fn choose(&mut self, key: u8) {
         self.chosen = key;
-        if !(self.first..self.first + COUNT).contains(&key) {
+        if !(self.first..self.first + self.row * self.row).contains(&key) {
             self.first = key - key % 12;
         }
     }
 
+    /// Pads in a row.
+    pub(super) fn row(&self) -> u8 {
+        self.row
+    }
+
+    /// Shows so many pads in a row, from the octave of this key on, and the chosen one in any case.
+    pub(super) fn show_rows(&mut self, row: u8, lowest: u8) {
+        (self.row, self.first) = (row, lowest - lowest % 12);
+        self.choose(self.chosen);
+    }
+
     /// The keys that are shown.
     pub(super) fn keys(&self) -> [u8; 2] {
-        [self.first, (self.first + COUNT - 1).min(127)]
+        [self.first, (self.first + self.row * self.row - 1).min(127)]
     }
 
     /// Shows pads this many octaves higher, if there are keys.
@@ -102,10 +116,10 @@ impl Pads {
         let (pointer, is_released) = ui.input(|input| (input.pointer.latest_pos(), input.pointer.any_released()));
         let carried = DragAndDrop::payload::<Carried>(ui.ctx());
         let empties = ui.input(|input| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace));
-        let size = rect.size() / f32::from(ROW);
+        let size = rect.size() / f32::from(self.row);
         let (mut touched, mut deed, chosen) = (None, None, self.chosen);
         for key in self.first..=self.keys()[1] {
-            let (column, row) = ((key - self.first) % ROW, ROW - 1 - (key - self.first) / ROW);
+            let (column, row) = ((key - self.first) % self.row, self.row - 1 - (key - self.first) / self.row);
             let cell = Rect::from_min_size(rect.min + vec2(f32::from(column), f32::from(row)) * size, size).shrink(2.0);
             let response = ui.interact(cell, Id::unique(("pad", key)), Sense::click_and_drag());
             let pad = kit.pad(key);
@@ -196,23 +210,31 @@ impl Face<'_> {
         let inside = rect.shrink2(vec2(6.0, 3.0));
         let top = inside.with_max_y(inside.top() + 14.0);
         line(painter, top, Align2::LEFT_CENTER, &note_name(self.key), SMALL, muted);
-        if self.group > 0 {
+        // A narrow pad has room for one of both; its outline says it, too.
+        if self.group > 0 && rect.width() >= NAMED {
             let colour = if self.is_down { palette.on_accent } else { palette.text };
             line(painter, top, Align2::RIGHT_CENTER, &self.group.to_string(), SMALL, colour);
         }
         let Some(pad) = self.pad else {
-            let text = fitting(painter, &["Drop a sound here", "Drop here", "empty"], SMALL, inside.width());
+            let text = fitting(painter, &["Drop a sound here", "Drop here", "empty", ""], SMALL, inside.width());
             line(painter, inside, Align2::CENTER_CENTER, text, SMALL, muted);
             return;
         };
         let bar = inside.with_min_y(inside.bottom() - 3.0);
-        let is_long = least_width(painter, self.name, TEXT) > inside.width();
-        let height = if is_long { 28.0 } else { 16.0 };
+        let (is_named, is_long) = (rect.width() >= NAMED, least_width(painter, self.name, TEXT) > inside.width());
+        let height = if !is_named {
+            0.0
+        } else if is_long {
+            28.0
+        } else {
+            16.0
+        };
         let named =
             Rect::from_min_max(pos2(inside.left(), bar.top() - 1.0 - height), pos2(inside.right(), bar.top() - 1.0));
-        match is_long {
-            true => _ = paragraph(painter, named, self.name, SMALL, text),
-            false => _ = line(painter, named, Align2::LEFT_CENTER, self.name, TEXT, text),
+        match (is_named, is_long) {
+            (false, _) => {}
+            (true, true) => _ = paragraph(painter, named, self.name, SMALL, text),
+            (true, false) => _ = line(painter, named, Align2::LEFT_CENTER, self.name, TEXT, text),
         }
         let picture = Rect::from_min_max(top.left_bottom(), named.right_top()).shrink(2.0);
         if let Some(figure) = self.figure.filter(|_| picture.height() >= 10.0) {

@@ -3,8 +3,13 @@
 use crate::editor::controls::Controls;
 use crate::editor::pages::curves::{self, SUSTAIN, lengths, whole};
 use crate::editor::pages::sections::Section;
-use egui::{CursorIcon, Id, PointerButton, Pos2, Rect, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
+use crate::editor::theme::SMALL;
+use crate::editor::widgets::text::line;
+use egui::{Align2, CursorIcon, Id, PointerButton, Pos2, Rect, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
+use sprung::engine::SoundingNote;
 use sprung::params::{Param, ParamInfo};
+use sprung::patch::routes::Source;
+use sprung::units::note_name;
 
 /// How many rounds of an oscillator are drawn.
 const ROUNDS: f64 = 2.0;
@@ -12,6 +17,9 @@ const ROUNDS: f64 = 2.0;
 const GRIP: f32 = 18.0;
 /// The least distance of two corners at one height.
 const APART: f32 = 14.0;
+/// Most notes whose names are written on the curve, and the height from which on it has room for them.
+const NAMED: usize = 4;
+const LEAST_WITH_NAMES: f32 = 60.0;
 
 /// A corner: the parameter that it moves, where it is, and how far the parameter moves with each pixel.
 #[derive(Clone, Copy)]
@@ -57,8 +65,15 @@ impl Curve {
         self.grab = None;
     }
 
-    /// Shows the curve of a section, if it has one.
-    pub(super) fn show(&mut self, ui: &Ui, rect: Rect, section: Section, controls: &mut Controls) {
+    /// Shows the curve of a section, if it has one, and where the notes are on it.
+    pub(super) fn show(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        section: Section,
+        notes: &[SoundingNote],
+        controls: &mut Controls,
+    ) {
         let values: Vec<f64> = section.iter().map(|info| f64::from(controls.heard(info))).collect();
         let roots = lengths(&|row| values[row]);
         let whole = self.grab.as_ref().map_or(whole(roots), |grab| grab.whole);
@@ -87,6 +102,7 @@ impl Curve {
         for corner in shown {
             self.follow(ui, corner, whole, controls);
         }
+        paint_notes(ui, rect, section, notes, controls);
     }
 
     /// Shows a corner, and lets the user drag it.
@@ -123,6 +139,46 @@ impl Curve {
         let palette = controls.palette;
         let edge = Stroke::new(1.5, if is_hot { palette.text } else { palette.accent });
         ui.painter().circle(place, if is_hot { 5.0 } else { 4.0 }, palette.panel, edge);
+    }
+}
+
+/// Paints where notes are on the curve of a section, the newest last, with the names of as many as stay readable.
+pub(super) fn paint_notes(ui: &Ui, rect: Rect, section: Section, notes: &[SoundingNote], controls: &Controls) {
+    let values: Vec<f64> = section.iter().map(|info| f64::from(controls.heard(info))).collect();
+    let palette = controls.palette;
+    for (order, note) in notes.iter().enumerate().rev() {
+        let Some(at) = place_of(rect, section[0].param, &values, note) else { continue };
+        let radius = if order == 0 { 3.5 } else { 2.5 };
+        ui.painter().circle(at, radius, palette.modulation, Stroke::new(1.0, palette.panel));
+        if order < NAMED && rect.height() > LEAST_WITH_NAMES {
+            let place = Rect::from_center_size(at - vec2(0.0, 12.0), vec2(40.0, 12.0));
+            line(ui.painter(), place, Align2::CENTER_CENTER, &note_name(note.key), SMALL, palette.muted);
+        }
+    }
+}
+
+/// Where a note is on the curve of an envelope or oscillator, whose first parameter is given; none once an envelope is over.
+fn place_of(rect: Rect, first: Param, values: &[f64], note: &SoundingNote) -> Option<Pos2> {
+    let at = |x: f64| rect.left() + rect.width() * x as f32;
+    match first {
+        Param::Envelope1Delay | Param::Envelope2Delay => {
+            let number = usize::from(first == Param::Envelope2Delay);
+            let (level, progress) = (note.sources[Source::Envelope1 as usize + number], note.progress[3 + number]);
+            let [delay, attack, hold, decay, release] = lengths(&|row| values[row]);
+            let total = whole([delay, attack, hold, decay, release]);
+            let stages = [delay, attack, hold, decay, SUSTAIN * total, release];
+            let length = stages.get(progress as usize)?;
+            let passed: f64 = stages[..progress as usize].iter().sum();
+            let x = (passed + f64::from(progress.fract()) * length) / total;
+            Some(pos2(at(x), rect.bottom() - rect.height() * level))
+        }
+        Param::Lfo1Rate | Param::Lfo2Rate | Param::Lfo3Rate => {
+            let number = [Param::Lfo1Rate, Param::Lfo2Rate, Param::Lfo3Rate].iter().position(|own| *own == first)?;
+            let (value, phase) = (note.sources[Source::Lfo1 as usize + number], note.progress[number]);
+            let round = f64::from(phase) - values[3] / 100.0;
+            Some(pos2(at((round - round.floor()) / ROUNDS), rect.center().y - curves::AROUND * rect.height() * value))
+        }
+        _ => None,
     }
 }
 

@@ -7,7 +7,7 @@ use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::pages::Request;
 use crate::editor::pages::sections::{Section, knobs, sections, show_title};
-use crate::editor::routes::list;
+use crate::editor::routes::list::{self, View};
 use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, TITLE_HEIGHT};
 use crate::editor::widgets::buttons::help_tab;
 use curve::Curve;
@@ -24,12 +24,13 @@ const TALL: f32 = 420.0;
 pub(super) struct MotionPage {
     /// The source whose section is shown below the routes.
     chosen: Source,
+    view: View,
     curve: Curve,
 }
 
 impl Default for MotionPage {
     fn default() -> Self {
-        Self { chosen: Source::Lfo1, curve: Curve::default() }
+        Self { chosen: Source::Lfo1, view: View::default(), curve: Curve::default() }
     }
 }
 
@@ -54,7 +55,8 @@ impl MotionPage {
             self.chosen = source;
             self.leave();
         }
-        list::show(ui, list, shown.patch(), shown.guide(), shown.preset().is_some(), controls);
+        let about = (shown.patch(), shown.guide(), shown.preset().is_some());
+        list::show(ui, list, &mut self.view, about, controls);
         let help = Rect::from_min_size(list.right_top() - vec2(22.0, 0.0), vec2(22.0, TITLE_HEIGHT));
         let asks = help_tab(ui, help, "modulation", controls);
         for section in sections(section_of(self.chosen).as_slice()) {
@@ -84,6 +86,7 @@ impl MotionPage {
         knobs(ui, first, columns, section, about, controls);
         let picture =
             Rect::from_min_max(pos2(rect.left(), first.top()), pos2(left - 2.0 * GAP, rect.bottom() - 2.0 * GAP));
-        self.curve.show(ui, picture.shrink2(vec2(8.0, 6.0)), section, controls);
+        let notes = sources::notes_of(self.chosen, shown, controls);
+        self.curve.show(ui, picture.shrink2(vec2(8.0, 6.0)), section, notes, controls);
     }
 }

@@ -1,5 +1,6 @@
 //! The sources of routes: each can be dragged to a knob; a click shows the knobs of those that have any.
 
+use super::curve::paint_notes;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::pages::curves;
@@ -8,9 +9,12 @@ use crate::editor::routes::{OF_KITS, source_name};
 use crate::editor::theme::{RADIUS, SMALL, TEXT};
 use crate::editor::widgets::text::{fitting, line, width};
 use egui::{
-    Align2, CursorIcon, Id, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Align2, Color32, CursorIcon, Id, Mesh, Painter, Pos2, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
+    UiBuilder, WidgetInfo, pos2, vec2,
 };
+use sprung::engine::SoundingNote;
 use sprung::patch::routes::{Route, Source};
+use std::f32::consts::TAU;
 
 /// The sources that have a curve, with their sections.
 const DRAWN: [(Source, &str); 5] = [
@@ -30,7 +34,9 @@ const AROUND: f32 = 14.0;
 /// What is said before sources in a line.
 const DRAG: &str = "drag to a knob";
 /// Width of the mark of a source that has routes.
-const DOT: f32 = 9.0;
+const DOT: f32 = 10.0;
+/// Radius of the pie of its value.
+const PIE: f32 = 3.5;
 
 /// The section whose curve a source has.
 fn drawn(source: Source) -> Option<&'static str> {
@@ -46,6 +52,11 @@ pub(in crate::editor) fn section_of(source: Source) -> Option<&'static str> {
 fn routes_of(source: Source, shown: &Shown) -> usize {
     let is_of = |(_, route): &(usize, Route)| route.source == source || route.scale == Some(source);
     shown.patch().routes.iter().filter(is_of).count()
+}
+
+/// The notes that move a source which routes read; others stand still.
+pub(super) fn notes_of<'a>(source: Source, shown: &Shown, controls: &Controls<'a>) -> &'a [SoundingNote] {
+    if routes_of(source, shown) > 0 { controls.notes } else { &[] }
 }
 
 /// The name of a source. Macros have one that the sound gives them, under a title of their own.
@@ -170,16 +181,37 @@ fn show_source(
     ui.painter().rect(rect, RADIUS, fill, edge, StrokeKind::Inside);
     let mut inside = rect.shrink2(vec2(6.0, 2.0));
     if used > 0 {
-        ui.painter().circle_filled(inside.left_center() + vec2(2.5, 0.0), 2.5, palette.modulation);
+        let now = controls.notes.first().map(|note| note.sources[source as usize]);
+        paint_pie(ui.painter(), inside.left_center() + vec2(3.0, 0.0), now, palette.modulation);
         inside.min.x += DOT;
     }
     let colour = if used > 0 || is_chosen { palette.text } else { palette.muted };
     let named = line(ui.painter(), inside, Align2::LEFT_CENTER, name, TEXT, colour);
     if let Some(section) = drawn(source).filter(|_| rect.height() > CHIP) {
         let picture = inside.with_min_x((named.right() + 10.0).max(inside.center().x)).shrink2(vec2(0.0, 5.0));
-        sections(&[section]).for_each(|section| {
+        for section in sections(&[section]) {
             curves::paint(ui.painter(), picture, section, controls);
-        });
+            paint_notes(ui, picture, section, notes_of(source, shown, controls), controls);
+        }
     }
     response.clicked()
+}
+
+/// Paints the mark of a source that has routes: a disc, or while a note sounds, a pie of its value there.
+fn paint_pie(painter: &Painter, centre: Pos2, now: Option<f32>, colour: Color32) {
+    let Some(share) = now.map(|value| value.abs().min(1.0)) else {
+        painter.circle_filled(centre, 2.5, colour);
+        return;
+    };
+    painter.circle_stroke(centre, PIE, Stroke::new(1.0, colour));
+    let corners = (20.0 * share).ceil() as u32;
+    if corners == 0 {
+        return;
+    }
+    let corner = |n: u32| centre + PIE * egui::Vec2::angled(TAU * (share * n as f32 / corners as f32 - 0.25));
+    let mut pie = Mesh::default();
+    pie.colored_vertex(centre, colour);
+    (0..=corners).for_each(|n| pie.colored_vertex(corner(n), colour));
+    (1..=corners).for_each(|n| pie.add_triangle(0, n, n + 1));
+    painter.add(pie);
 }

@@ -11,6 +11,8 @@ use sprung::units::ratio_from_semitones;
 
 /// Share of an envelope's picture for the sustain, which has no duration.
 pub(in crate::editor) const SUSTAIN: f64 = 0.2;
+/// Half the height of a curve around the middle of its picture, as a share of that.
+pub(in crate::editor) const AROUND: f32 = 0.46;
 /// Number of points of each curved stage.
 const POINTS: usize = 16;
 
@@ -33,7 +35,7 @@ pub(in crate::editor) fn paint(
     }
     let outline = outlines::of(section, &|info| controls.heard(info))?;
     let [floor, middle] = [rect.bottom(), rect.center().y].map(|y| painter.round_to_pixel_center(y));
-    let (ground, height) = if outline.is_around { (middle, 0.46 * rect.height()) } else { (floor, rect.height()) };
+    let (ground, height) = if outline.is_around { (middle, AROUND * rect.height()) } else { (floor, rect.height()) };
     let place = |point: egui::Vec2| pos2(rect.left() + rect.width() * point.x, ground - height * point.y);
     painter.hline(rect.x_range(), ground, Stroke::new(1.0, palette.line));
     // A section that is off is drawn in grey.

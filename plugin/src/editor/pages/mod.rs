@@ -91,7 +91,10 @@ impl Pages {
         if is_preset {
             self.follow(controls);
         }
-        let request = self.path(ui, layout.path, is_preset, controls);
+        let of = || small_figure(&shown.patch().modes, shown.family(), shown.tags());
+        let known = self.figure.take().filter(|(subject, _)| *subject == shown.subject());
+        let (subject, figure) = known.unwrap_or_else(|| (shown.subject(), of()));
+        let request = self.path(ui, layout.path, (is_preset, &figure), controls);
         let (rect, (part, page)) = (layout.sections, self.part);
         let said = match part {
             "Model" => self.body.show(ui, rect, shown, controls).map(Err),
@@ -102,14 +105,12 @@ impl Pages {
                     left = rect.with_max_x(rect.left() + SECTIONS);
                     voices::show(ui.painter(), rect.with_min_x(left.right() + GAP), voices, controls);
                 }
-                let of = || small_figure(&shown.patch().modes, shown.family(), shown.tags());
-                let figure = self.figure.take().filter(|(subject, _)| *subject == shown.subject());
-                let (_, figure) = self.figure.insert(figure.unwrap_or_else(|| (shown.subject(), of())));
-                let about = (shown.patch(), shown.guide(), is_preset, &*figure);
+                let about = (shown.patch(), shown.guide(), is_preset, &figure);
                 sections::show(ui, left, PAGES[page], (part, std::mem::take(&mut self.is_new)), about, controls);
                 None
             }
         };
+        self.figure = Some((subject, figure));
         said.map(Request::Say).or(request)
     }
 
@@ -121,9 +122,9 @@ impl Pages {
         self.part.0 = here.unwrap_or(self.part.0);
     }
 
-    fn path(&mut self, ui: &Ui, rect: Rect, is_preset: bool, controls: &mut Controls) -> Option<Request> {
+    fn path(&mut self, ui: &Ui, rect: Rect, about: (bool, &Figure), controls: &mut Controls) -> Option<Request> {
         let way = rect.with_max_x(rect.right() - HELP);
-        if let Some(part) = path::show(ui, way, self.part.0, is_preset, controls) {
+        if let Some(part) = path::show(ui, way, self.part.0, about, controls) {
             self.leave(controls);
             (self.part, self.is_new) = (part, true);
         }

@@ -154,8 +154,14 @@ fn has_picture(section: Section) -> bool {
     !matches!(section[0].section, "Input" | "Voices" | "Control")
 }
 
-/// Draws the large picture of a section. Returns what it shows.
-fn picture(painter: &Painter, rect: Rect, section: Section, figure: &Figure, controls: &Controls) -> Option<String> {
+/// Draws the picture of a section, if it has one. Returns what it shows.
+pub(super) fn picture(
+    painter: &Painter,
+    rect: Rect,
+    section: Section,
+    figure: &Figure,
+    controls: &Controls,
+) -> Option<String> {
     match section[0].param {
         Param::Decay => {
             face::paint_still(painter, rect, figure, controls.palette);

@@ -21,6 +21,7 @@ use crate::link::Link;
 use egui::{Align2, Rect, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use sprung::params::{PARAMS, Param, ParamInfo};
 use sprung::patch::routes::Source;
+use sprung_picture::play::ESSENTIALS;
 
 /// The smallest height of a page with titles and tiles: 330 for the tiles of bodies and materials, and the rest for knobs and gaps.
 const TALL: f32 = 472.0;
@@ -31,16 +32,6 @@ const LARGE: f32 = 1.5 * KNOB;
 /// Heights of the row with the spaces, and of the line about the body above it.
 const FOOT: f32 = 22.0;
 const CAPTION: f32 = 18.0;
-
-/// Knobs that matter for most sounds, and their names.
-const ESSENTIALS: [(Param, &str); 6] = [
-    (Param::Decay, "Decay"),
-    (Param::Tilt, "Brightness"),
-    (Param::Width, "Width"),
-    (Param::VaryPosition, "Vary"),
-    (Param::SpaceMix, "Space mix"),
-    (Param::SpaceSize, "Space size"),
-];
 
 /// What players move most, to be dragged to these knobs or, by way of a tab, to any.
 const SOURCES: [Source; 6] =

@@ -7,10 +7,8 @@ use crate::editor::widgets::text::{line, width};
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use sprung::params::Param;
+use sprung_picture::play::FLOORS;
 use std::f32::consts::TAU;
-
-/// Names of the spaces as floors, by their values.
-const FLOORS: [&str; 4] = ["Nothing", "Plate", "Spring", "Room"];
 
 /// Height of the floor's far edge, as a share of the stage's.
 const HORIZON: f32 = 0.64;
@@ -106,7 +104,7 @@ pub(super) fn show_spaces(ui: &Ui, rect: Rect, controls: &mut Controls) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::FLOORS;
+    use super::*;
     use sprung::params::{Choice, Space};
 
     #[test]

@@ -12,23 +12,8 @@ use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::line;
 use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 use sprung::sound::bodies::{Body, MATERIALS, Model};
+use sprung_picture::play::{DISCS, MODELS};
 use sprung_picture::{Figure, Origin, model_name, tint};
-
-/// Models with tiles, and their names there. All others are in the list below.
-const TILES: [(&str, &str); 9] = [
-    ("free_bar", "Bar"),
-    ("membrane", "Head"),
-    ("free_plate", "Plate"),
-    ("church_bell", "Bell"),
-    ("string", "String"),
-    ("open_tube", "Tube"),
-    ("glass", "Glass"),
-    ("free_disc", "Gong"),
-    ("bowl", "Bowl"),
-];
-/// Materials with a disc of their colour.
-const DISCS: [&str; 10] =
-    ["bronze", "steel", "brass", "aluminium", "glass", "rosewood", "maple", "spruce", "porcelain", "nylon"];
 
 /// What a table of modes lacks here.
 const LACKS: &str = "Modes alone, without a material or a place to strike.";
@@ -56,7 +41,7 @@ impl Things {
         let origin = self.read.get(shown);
         if self.figures.is_empty() {
             let model = |id| Model::find(id).cloned().unwrap_or(Model::String);
-            self.figures = TILES.iter().map(|(id, _)| Figure::small(&Body::new(model(id)))).collect();
+            self.figures = MODELS.iter().map(|(id, _)| Figure::small(&Body::new(model(id)))).collect();
         }
         let (changed, what) = if is_tall {
             self.tiles(ui, rect, &origin, shown, controls)?
@@ -92,9 +77,9 @@ impl Things {
         let mut picked = None;
         let [columns, discs] = COLUMNS;
         let size = vec2((rect.width() - 8.0) / columns as f32, 52.0);
-        let tiles = next(TILES.len().div_ceil(columns) as f32 * (size.y + 4.0));
+        let tiles = next(MODELS.len().div_ceil(columns) as f32 * (size.y + 4.0));
         let now = origin.body().map(|body| body.model.id());
-        for (place, ((id, name), figure)) in TILES.iter().zip(&self.figures).enumerate() {
+        for (place, ((id, name), figure)) in MODELS.iter().zip(&self.figures).enumerate() {
             let offset = vec2((place % columns) as f32, (place / columns) as f32) * (size + vec2(4.0, 4.0));
             let tile = Rect::from_min_size(tiles.min + offset, size);
             let is_now = now == Some(id);

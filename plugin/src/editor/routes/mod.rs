@@ -3,12 +3,14 @@
 pub(super) mod carry;
 pub(super) mod learn;
 pub(super) mod list;
+mod matrix;
 
 use crate::editor::controls::gestures::load;
 use crate::editor::controls::{Controls, Said};
 use crate::loaded::positions_of;
 use crate::state::State;
 use egui::{Id, Popup, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo};
+use sprung::engine::SoundingNote;
 use sprung::params::{PARAMS, Param, ParamInfo};
 use sprung::patch::Patch;
 use sprung::patch::routes::{MAX_ROUTES, Response, Route, Routes, Source, amount_param};
@@ -74,6 +76,17 @@ impl Ring {
         let marks = controls.modulated(info).map(|value| info.normalise(value) as f32).collect();
         Self { ranges, marks }
     }
+}
+
+/// Where each sounding note is on the bar of a route, from 0 to 1, the newest note first.
+fn now(place: usize, route: &Route, controls: &Controls) -> Vec<f32> {
+    let info = amount_param(place).info();
+    let amount = |note: &SoundingNote| {
+        let moved = note.moved.iter().flatten().find(|(param, _)| *param == info.param);
+        moved.map_or(controls.heard(info), |(_, amount)| *amount)
+    };
+    let on_bar = |note: &SoundingNote| (0.5 + 0.5 * note.travel(route, amount(note))).clamp(0.0, 1.0);
+    controls.notes.iter().map(on_bar).collect()
 }
 
 /// Makes the place of a route's sentence a button that opens its menu.

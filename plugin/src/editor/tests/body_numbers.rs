@@ -53,7 +53,7 @@ fn a_number_is_dragged_heard_and_undone_as_one_step() {
     let before = band.stage.params.state();
     band.stage.harness.get_by_role_and_label(Role::Tab, "Model").click();
     band.passes(3);
-    let place = band.stage.harness.get_by_label("Strike").rect().center();
+    let place = band.stage.harness.get_by_label("Strike place").rect().center();
     band.press(place, true);
     for step in 1..=10 {
         band.event(Event::PointerMoved(place + vec2(4.0 * step as f32, 0.0)));
@@ -103,7 +103,7 @@ fn bodies_with_too_many_modes_are_refused_and_the_sound_stays() {
     let mut stage = stage("Guitar", SIZE, 1.0, Theme::Dark);
     let before = stage.params.state();
     stage.tab("Model");
-    let place = stage.harness.get_by_label("Count").rect().center();
+    let place = stage.harness.get_by_label("Number of modes").rect().center();
     for pressed in [true, false] {
         stage.harness.event(Event::PointerMoved(place));
         stage.harness.event(Event::PointerButton {

@@ -84,6 +84,25 @@ fn pictures_of_the_pads_are_as_accepted() {
 }
 
 #[test]
+fn all_pads_of_a_kit_are_shown_at_once_and_the_chosen_one_stays_chosen() {
+    for (size, name) in [(SIZE, "pads-many"), (LEAST_SIZE, "pads-many-least")] {
+        let mut stage = at("Acoustic Kit", size, Theme::Dark);
+        stage.harness.get_by_label("Pad F#2 Closed hat").click();
+        stage.harness.run_steps(3);
+        stage.tab("8 × 8");
+        compare_small(name, if size == SIZE { 2 } else { 1 }, &mut stage.harness);
+        let is_pad = |label: Option<String>| label.is_some_and(|label| label.starts_with("Pad "));
+        let pads = stage.harness.query_all_by_role(Role::Button);
+        let shown = pads.into_iter().filter(|node| is_pad(node.accesskit_node().label())).count();
+        assert_eq!(shown, 64);
+        assert!(stage.kit().pads.iter().all(|(key, _)| (24..88).contains(key)), "so all are seen");
+        stage.tab("4 × 4");
+        stage.harness.get_by_label("Pad F#2 Closed hat");
+    }
+    finish();
+}
+
+#[test]
 fn a_pad_plays_lights_up_is_chosen_and_is_let_go() {
     let mut band = Band::of(at("Acoustic Kit", SIZE, Theme::Dark));
     let kick = band.stage.place("C2");

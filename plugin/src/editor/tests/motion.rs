@@ -105,6 +105,36 @@ fn pictures_of_the_face_are_as_accepted() {
 }
 
 #[test]
+fn routes_are_a_matrix_whose_empty_cells_make_routes_or_are_ordered_by_target() {
+    for (size, name) in [(SIZE, "motion-matrix"), (LEAST_SIZE, "motion-matrix-least")] {
+        let mut stage = at("Church Bell", size, Theme::Dark);
+        let before = stage.routes();
+        stage.tab("Matrix");
+        compare(name, &mut stage.harness);
+        for (place, _) in before.iter() {
+            let amount = sprung::patch::routes::amount_param(place).info().name;
+            stage.harness.get_by_role_and_label(Role::Slider, amount);
+        }
+        stage.button("Add velocity › Noise level");
+        let new: Vec<_> = stage.routes().iter().filter(|(place, _)| before.get(*place).is_none()).collect();
+        assert_eq!(new.len(), 1);
+        assert_eq!(new[0].1, Route::linear(Source::Velocity, Param::NoiseLevel));
+        stage.button("Undo");
+        assert_eq!(stage.routes(), before);
+    }
+    let mut stage = at("Church Bell", SIZE, Theme::Dark);
+    stage.tab("By target");
+    compare_small("motion-targets", 2, &mut stage.harness);
+    let routes = stage.routes();
+    let row = |place: usize| stage.harness.get_by_label_contains(&format!("Route {}: ", place + 1)).rect().top();
+    let mut rows: Vec<(f32, usize)> =
+        routes.iter().map(|(place, route)| (row(place), route.destination as usize)).collect();
+    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert!(rows.is_sorted_by_key(|(_, target)| *target), "{rows:?}");
+    finish();
+}
+
+#[test]
 fn a_source_that_is_dragged_to_a_knob_of_another_face_modulates_it() {
     let mut stage = at("Marimba", SIZE, Theme::Dark);
     let before = stage.routes();

@@ -1,6 +1,6 @@
 //! Places of the parts of the window.
 
-use crate::editor::theme::{CELL_HEIGHT, GAP, HEADER_HEIGHT, PADDING, PATH_HEIGHT, STATUS_HEIGHT, TITLE_HEIGHT};
+use crate::editor::theme::{CELL_HEIGHT, GAP, HEADER_HEIGHT, PADDING, PATH_HEIGHTS, STATUS_HEIGHT, TITLE_HEIGHT};
 use egui::{Rect, pos2};
 
 /// The parts of the window.
@@ -18,9 +18,10 @@ pub(crate) struct Layout {
 }
 
 /// Width of two wheels with a gap beside each, as wide as their names, and the least width of a window that has them: beside them
-/// there is room for five octaves.
+/// there is room for five octaves. From this height on, such a window has pictures of the parts of the sound's way.
 const WHEELS: f32 = 72.0;
 const LEAST_WIDTH_WITH_WHEELS: f32 = 900.0;
+const LEAST_HEIGHT_WITH_PICTURES: f32 = 680.0;
 
 /// The height of sections with this many rows of knobs.
 fn section_height(rows: usize) -> f32 {
@@ -31,6 +32,7 @@ impl Layout {
     /// Divides a window.
     pub(crate) fn of(window: Rect) -> Self {
         let inner = window.shrink(GAP);
+        let is_wide = window.width() >= LEAST_WIDTH_WITH_WHEELS;
         let mut top = inner.top();
         let mut bottom = inner.bottom();
         let header = Rect::from_min_max(inner.min, pos2(inner.right(), top + HEADER_HEIGHT));
@@ -39,17 +41,17 @@ impl Layout {
         bottom = status.top() - GAP / 2.0;
         let piano_height = (inner.height() * 0.115).clamp(40.0, 96.0);
         let keys = Rect::from_min_max(pos2(inner.left(), bottom - piano_height), pos2(inner.right(), bottom));
-        let (wheels, piano) = keys
-            .split_left_right_at_x(inner.left() + if window.width() < LEAST_WIDTH_WITH_WHEELS { 0.0 } else { WHEELS });
+        let (wheels, piano) = keys.split_left_right_at_x(inner.left() + if is_wide { WHEELS } else { 0.0 });
         bottom = piano.top() - GAP;
+        let path_height = PATH_HEIGHTS[usize::from(is_wide && window.height() >= LEAST_HEIGHT_WITH_PICTURES)];
         // As many rows of knobs as leave the upper half at least a third of the window.
-        let room = bottom - top - PATH_HEIGHT - GAP;
+        let room = bottom - top - path_height - GAP;
         let rows = (1..=3).rev().find(|rows| room - section_height(*rows) >= inner.height() * 0.3).unwrap_or(1);
         // Smaller than the smallest window, the header stays free.
-        let sections_top = (bottom - section_height(rows)).max(top + PATH_HEIGHT);
+        let sections_top = (bottom - section_height(rows)).max(top + path_height);
         let sections = Rect::from_min_max(pos2(inner.left(), sections_top), pos2(inner.right(), bottom));
         bottom = sections.top();
-        let path = Rect::from_min_max(pos2(inner.left(), bottom - PATH_HEIGHT), pos2(inner.right(), bottom));
+        let path = Rect::from_min_max(pos2(inner.left(), bottom - path_height), pos2(inner.right(), bottom));
         bottom = path.top() - GAP / 2.0;
         let split = inner.left() + ((inner.width() - GAP) * 0.65).round();
         let modes = Rect::from_min_max(pos2(inner.left(), top), pos2(split, bottom));

@@ -239,8 +239,8 @@ pub(super) const PADDING: f32 = 8.0;
 pub(super) const RADIUS: u8 = 5;
 pub(super) const HEADER_HEIGHT: f32 = 30.0;
 pub(super) const TITLE_HEIGHT: f32 = 20.0;
-/// Height of the way of the sound: three parts, one below the other.
-pub(super) const PATH_HEIGHT: f32 = 58.0;
+/// Height of the way of the sound: three parts, one below the other, without pictures and with them.
+pub(super) const PATH_HEIGHTS: [f32; 2] = [58.0, 98.0];
 pub(super) const STATUS_HEIGHT: f32 = 18.0;
 /// Diameter of a knob.
 pub(super) const KNOB: f32 = 34.0;

@@ -132,22 +132,23 @@ pub(crate) fn show(
     show_value(ui, parts.value, Align2::CENTER_CENTER, info, &turned, controls);
 }
 
-/// Shows a parameter as a bar from the position of zero, with its value beside it; `ring` shows its modulation.
+/// Shows a parameter as a bar from the position of zero, with its value beside it; `ring` shows its modulation, and `now` are places on
+/// the bar that the sounding notes have reached, the newest note's first.
 pub(crate) fn show_bar(
     ui: &mut Ui,
     [bar, value]: [Rect; 2],
     info: &'static ParamInfo,
-    ring: &Ring,
+    (ring, now): (&Ring, &[f32]),
     controls: &mut Controls,
 ) {
     let turned = turn(ui, bar, value, bar.width(), info, controls);
     let palette = controls.palette;
     let track = Rect::from_center_size(bar.center(), vec2(bar.width(), 4.0));
     let x = |position: f32| bar.left() + position * bar.width();
-    let [zero, now] = [info.normalise(0.0) as f32, controls.position(info)].map(x);
+    let [zero, end] = [info.normalise(0.0) as f32, controls.position(info)].map(x);
     let colour = if turned.is_hovered { palette.muted.gamma_multiply(0.55) } else { palette.line };
     ui.painter().rect_filled(track, 2.0, colour);
-    ui.painter().rect_filled(track.with_min_x(zero.min(now)).with_max_x(zero.max(now)), 2.0, palette.modulation);
+    ui.painter().rect_filled(track.with_min_x(zero.min(end)).with_max_x(zero.max(end)), 2.0, palette.modulation);
     ui.painter().vline(zero, bar.y_range().shrink(4.0), Stroke::new(1.0, palette.muted));
     for range in &ring.ranges {
         let [from, to] = range.map(x);
@@ -155,11 +156,20 @@ pub(crate) fn show_bar(
         ui.painter().hline(from.min(to)..=from.max(to), above, Stroke::new(1.5, palette.modulation));
     }
     let edge = if turned.is_focused { Stroke::new(1.5, palette.accent) } else { Stroke::NONE };
-    ui.painter().circle(pos2(now, bar.center().y), 5.0, palette.text, edge);
+    ui.painter().circle(pos2(end, bar.center().y), 5.0, palette.text, edge);
     let offset = controls.params.knobs()[info.param as usize].offset();
     let host = (offset.abs() > 1e-4).then_some((controls.position(info) + offset).clamp(0.0, 1.0));
     for mark in ring.marks.iter().copied().chain(host) {
         ui.painter().circle_filled(pos2(x(mark), bar.center().y), 3.0, palette.modulation);
+    }
+    for (order, place) in now.iter().enumerate().rev() {
+        let radius = if order == 0 { 3.0 } else { 2.0 };
+        ui.painter().circle(
+            pos2(x(*place), bar.center().y),
+            radius,
+            palette.panel,
+            Stroke::new(1.2, palette.modulation),
+        );
     }
     face::paint_mark(ui.painter(), bar.center_bottom() - vec2(0.0, 2.0), turned.mark.as_ref(), palette);
     show_value(ui, value, Align2::RIGHT_CENTER, info, &turned, controls);
