@@ -55,7 +55,7 @@ export function drawBody(canvas, player, strike) {
 }
 
 // The numbers are as the module’s `draw` says.
-function paint(context, numbers, gold) {
+export function paint(context, numbers, gold) {
   let at = 0;
   const next = () => numbers[at++];
   const trace = (points) => {

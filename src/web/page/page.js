@@ -2,6 +2,7 @@
 import { Player, startsNote } from "./player.js";
 import { listen, useMidi } from "./keys.js";
 import { drawBody } from "./body.js";
+import { panel } from "./panel.js";
 import { draw } from "./pictures.js";
 import { renderTake, wav } from "./wav.js";
 
@@ -25,7 +26,7 @@ async function start() {
   made.onprocessorerror = () => (element("status").textContent = "The audio worklet has failed; reload the page.");
   made.port.onmessage = ({ data }) => {
     if (data.masses) {
-      show(data.masses);
+      drawMasses(data.masses);
       body.swing(data.masses.subarray(1, 65));
     }
     if (data.played) {
@@ -53,7 +54,7 @@ function play(key, isOn, velocity = +element("velocity").value) {
 }
 
 const keys = listen(element("keys"), play);
-const show = draw(element("modes"), element("plane"), (pull) => {
+const drawMasses = draw(element("modes"), element("plane"), (pull) => {
   const key = state.key;
   play(key, true, Math.max(1, Math.round(127 * pull)));
   setTimeout(() => play(key, false), 400);
@@ -68,14 +69,31 @@ function letGo() {
   held = undefined;
 }
 
-const body = drawBody(element("body"), own, (place, velocity) => {
+function strike(velocity) {
   letGo();
-  if (place) send({ strike: place });
   const key = state.preset.home;
   play(key, true, velocity);
   held = { key, timer: setTimeout(letGo, 700) };
-  if (place) own.play({ strike: place }, 0), body.renew();
+}
+
+// A change of the body, which the page’s own player draws.
+function change(event) {
+  send(event);
+  own.play(event, 0);
+  body.renew();
+}
+
+const body = drawBody(element("body"), own, (place, velocity) => {
+  if (place) change({ strike: place });
+  strike(velocity);
 });
+
+function turn(event) {
+  send(event);
+  own.play(event, 0);
+}
+
+const show = panel(element, own, (event) => (event.make ? change(event) : turn(event)), () => strike(89));
 
 function choose(preset) {
   state.preset = preset;
@@ -83,19 +101,9 @@ function choose(preset) {
   body.renew();
   state.key = preset.home;
   element("about").textContent = preset.comment;
-  element("macros").replaceChildren(...preset.macros.map(slider).filter(Boolean));
+  show(preset);
   keys.centre(preset.home);
   if (node) send({ preset: preset.number });
-}
-
-// A macro’s slider, if it has a name. A preset begins with its macros at rest.
-function slider(name, macro) {
-  if (!name) return undefined;
-  const label = Object.assign(document.createElement("label"), { textContent: name });
-  const input = Object.assign(document.createElement("input"), { type: "range", min: 0, max: 100, value: 0 });
-  input.oninput = () => send({ macro, value: +input.value });
-  label.append(input);
-  return label;
 }
 
 // The family’s presets; the first list is of all.
@@ -111,6 +119,10 @@ list("");
 element("preset").value = state.preset.number;
 choose(state.preset);
 element("family").onchange = ({ target }) => choose(list(target.value));
+// The pitch wheel springs back when it is let go.
+const bend = (value) => send({ message: [0xe0, value & 127, value >> 7] });
+element("bend").oninput = ({ target }) => bend(+target.value);
+element("bend").onchange = ({ target }) => bend((target.value = 8192));
 element("wheel").oninput = ({ target }) => send({ message: [0xb0, 1, +target.value] });
 element("preset").onchange = ({ target }) => choose(presets[+target.value]);
 
@@ -132,7 +144,7 @@ element("forget").onclick = async () => {
   choose(state.preset);
   await old?.context.close();
   body.swing(new Float32Array(64));
-  show(new Float32Array(129));
+  drawMasses(new Float32Array(129));
 };
 
 // A message of a keyboard; the page’s wheel follows the keyboard’s.

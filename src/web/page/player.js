@@ -1,11 +1,11 @@
-// An instance of the module. A take is a list of {frame, preset}, {frame, strike}, {frame, macro, value} and {frame, message}: a
-// preset’s number, the place at which its body is struck from then on, a macro’s number with 0 to 100, or the bytes of a MIDI
-// message, in order of frames from the start. The same take gives the same samples, whatever the lengths of blocks.
+// An instance of the module. A take is a list of {frame, preset}, {frame, strike}, {frame, make}, {frame, param, position} and {frame,
+// message}: a preset’s number, the place at which its body is struck from then on, the numbers of its model and material, a
+// parameter’s number with 0 to 1, or the bytes of a MIDI message, in order of frames from the start. The same take gives the same samples, whatever the lengths of blocks.
 
 const BLOCK = 1024;
 
 // Whether an event of a take is set between blocks.
-const setsSound = ({ preset, strike }) => preset !== undefined || strike !== undefined;
+const setsSound = ({ preset, strike, make }) => preset !== undefined || strike !== undefined || make !== undefined;
 
 // Whether an event of a take starts a note.
 export const startsNote = ({ message }) => message && (message[0] & 0xf0) === 0x90 && message[2] > 0;
@@ -25,20 +25,44 @@ export class Player {
   // The presets, each with name, family, lowest, highest and home key, macros and comment. Not on the audio thread, which cannot
   // decode text.
   presets() {
-    const length = this.wasm.presets(this.synth);
-    const text = new TextDecoder().decode(new Uint8Array(this.wasm.memory.buffer, this.wasm.text(this.synth), length));
-    return text.trimEnd().split("\n").map((line, number) => {
+    return this.text(this.wasm.presets(this.synth)).split("\n").map((line, number) => {
       const [name, family, lowest, highest, home, macros, comment] = line.split("\t");
       const keys = { lowest: +lowest, highest: +highest, home: +home };
       return { number, name, family, ...keys, macros: macros.split(";"), comment };
     });
   }
 
+  // The text of this length that the module has just written.
+  text(length) {
+    return new TextDecoder().decode(new Uint8Array(this.wasm.memory.buffer, this.wasm.text(this.synth), length)).trimEnd();
+  }
+
+  // What can be set, by kind: for each a name and what the module’s `controls` says of it.
+  controls() {
+    const rows = this.text(this.wasm.controls(this.synth)).split("\n").map((line) => line.split("\t"));
+    return (kind) => rows.filter(([own]) => own === kind).map(([, name, ...numbers]) => ({ name, numbers }));
+  }
+
+  // The position of a parameter in the preset, and its value there as text.
+  position(param) {
+    return this.wasm.position(this.synth, param);
+  }
+
+  say(param, position) {
+    return this.text(this.wasm.say(this.synth, param, position));
+  }
+
+  // The numbers of the preset’s model and material; −1 for none of the lists.
+  madeOf() {
+    return [0, 1].map((which) => this.wasm.made_of(this.synth, which));
+  }
+
   // Plays one event of a take, at an offset into the next block.
   play(event, offset) {
     if (event.preset !== undefined) this.wasm.load(this.synth, event.preset);
     else if (event.strike !== undefined) this.wasm.strike_at(this.synth, ...event.strike);
-    else if (event.macro !== undefined) this.wasm.turn(this.synth, offset, event.macro, event.value);
+    else if (event.make !== undefined) this.wasm.make(this.synth, ...event.make);
+    else if (event.param !== undefined) this.wasm.turn(this.synth, offset, event.param, event.position);
     else this.wasm.midi(this.synth, offset, event.message[0], event.message[1] ?? 0, event.message[2] ?? 0);
   }
 
@@ -67,6 +91,12 @@ export class Player {
   draw(energies, width, height, seconds, glow) {
     this.floats(this.wasm.energies(this.synth), energies.length).set(energies);
     const length = this.wasm.draw(this.synth, width, height, seconds, glow);
+    return this.floats(this.wasm.numbers(this.synth), length);
+  }
+
+  // The tile of a model, as `draw`.
+  tile(model, width, height, glow) {
+    const length = this.wasm.tile(this.synth, model, width, height, glow);
     return this.floats(this.wasm.numbers(this.synth), length);
   }
 

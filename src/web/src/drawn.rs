@@ -3,8 +3,9 @@
 use ecolor::Color32;
 use emath::{Pos2, Rect, pos2, vec2};
 use sprung::preset::Preset;
-use sprung::sound::bodies::Point;
-use sprung_picture::{BodyShape, Origin, Picture, REACH, Swing};
+use sprung::sound::bodies::{Body, Model, Point};
+use sprung_picture::play::MODELS;
+use sprung_picture::{BodyShape, Figure, Origin, Picture, REACH, Swing};
 
 /// Number of modes that are shown.
 pub(crate) const SHOWN: usize = 64;
@@ -31,10 +32,18 @@ impl Drawn {
     pub(crate) fn draw(&mut self, size: [f32; 2], seconds: f32, glow: u32) -> usize {
         let rect = rect(size);
         let moved = self.swing.advance(seconds, &self.shape, &self.energies, rect);
-        let [_, red, green, blue] = glow.to_be_bytes();
         let strike = self.shape.origin.body().map(|body| body.strike);
-        let glow = Color32::from_rgb(red, green, blue);
-        let picture = Picture::of(rect, &self.shape.figure, &moved, strike, glow);
+        let picture = Picture::of(rect, &self.shape.figure, &moved, strike, colour(glow));
+        self.write(&picture)
+    }
+
+    /// Draws the tile of a model, as [`Drawn::draw`] does.
+    pub(crate) fn tile(&mut self, model: usize, size: [f32; 2], glow: u32) -> usize {
+        let model = MODELS.get(model).and_then(|(id, _)| Model::find(id)).cloned().unwrap_or(Model::String);
+        self.write(&Picture::of(rect(size), &Figure::small(&Body::new(model)), &[], None, colour(glow)))
+    }
+
+    fn write(&mut self, picture: &Picture) -> usize {
         let numbers = &mut self.numbers;
         numbers.clear();
         // Two triangles are a patch with four corners.
@@ -65,6 +74,11 @@ impl Drawn {
         self.numbers.extend([x as f32, y as f32]);
         distance <= REACH && matches!(self.shape.origin, Origin::FromBody(_))
     }
+}
+
+fn colour(rgb: u32) -> Color32 {
+    let [_, red, green, blue] = rgb.to_be_bytes();
+    Color32::from_rgb(red, green, blue)
 }
 
 fn rect([width, height]: [f32; 2]) -> Rect {

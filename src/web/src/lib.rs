@@ -5,6 +5,7 @@
 //! that allocates: [`create`], [`presets`], [`load`], [`strike_at`], [`process`] after one of these, [`energies`], [`draw`], [`numbers`] or [`touch`]; of these
 //! four, the first after another preset computes the shapes of its modes, which is slow.
 
+mod controls;
 mod drawn;
 mod player;
 
@@ -68,14 +69,78 @@ pub unsafe extern "C" fn midi(player: *mut Player, frame: u32, status: u8, first
     unsafe { at(player) }.midi(frame, [status, first, second]);
 }
 
-/// Turns a macro, counted from 0, to a value from 0 to 100, at a frame of the next block. Real-time safe.
+/// Turns the parameter with a number to a position from 0 to 1, at a frame of the next block. Real-time safe.
 ///
 /// # Safety
 /// `player` is from [`create`].
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn turn(player: *mut Player, frame: u32, number: usize, value: f32) {
+pub unsafe extern "C" fn turn(player: *mut Player, frame: u32, number: usize, position: f64) {
     // SAFETY: as above.
-    unsafe { at(player) }.turn(frame, number, value);
+    unsafe { at(player) }.turn(frame, number, position);
+}
+
+/// Writes the list of what the page can set: a line for each, separated by tabs. `exciter`, its name, the number of its level, that of
+/// another parameter that is least while it is off or −1, and the position at which it starts; `knob`, its name and number; `space`, its
+/// name, the parameter's number and its position; `model` and its name; `material`, its name and colour; `macro`, nothing, and its
+/// number. Returns the length in bytes; [`text`] returns its address.
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn controls(player: *mut Player) -> usize {
+    // SAFETY: as above.
+    unsafe { at(player) }.list_controls()
+}
+
+/// The position of the parameter with a number in the preset, from 0 to 1.
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn position(player: *mut Player, number: usize) -> f64 {
+    // SAFETY: as above.
+    unsafe { at(player) }.position(number)
+}
+
+/// Writes the value of a parameter at a position. Returns its length in bytes; [`text`] returns its address.
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn say(player: *mut Player, number: usize, position: f64) -> usize {
+    // SAFETY: as above.
+    unsafe { at(player) }.say(number, position)
+}
+
+/// Gives the preset a body of a model and a material, by their numbers in the lists of [`controls`], from the next block on; −1 leaves
+/// what it has. A table of modes becomes a body, of two joined bodies the first one stays. Allocates.
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn make(player: *mut Player, model: i32, material: i32) {
+    // SAFETY: as above.
+    unsafe { at(player) }.make([model, material]);
+}
+
+/// The number of the preset's model (`which` 0) or material (1) in the lists of [`controls`]; −1 for another or none.
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn made_of(player: *mut Player, which: usize) -> i32 {
+    // SAFETY: as above.
+    unsafe { at(player) }.made_of()[which.min(1)]
+}
+
+/// Draws the tile of the model with a number, as [`draw`] does.
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tile(player: *mut Player, model: usize, width: f32, height: f32, glow: u32) -> usize {
+    // SAFETY: as above.
+    unsafe { at(player) }.drawn().tile(model, [width, height], glow)
 }
 
 /// Renders the next block of up to [`BLOCK`] frames. Returns whether anything sounds. Real-time safe, but for a preset that begins.

@@ -1,8 +1,9 @@
 //! A synth with memory that JavaScript reads and writes.
 
+use crate::controls;
 use crate::drawn::{Drawn, SHOWN};
 use sprung::engine::{Event, EventKind, Snapshot, Synth, midi::parse_message};
-use sprung::patch::routes::macro_param;
+use sprung::params::ParamInfo;
 use sprung::preset::Preset;
 use sprung::sound::bodies::Point;
 use sprung_picture::Origin;
@@ -72,11 +73,28 @@ impl Player {
             return;
         }
         if let Some(modes) = origin.struck_at(point) {
-            if !self.is_new {
-                self.preset.patch.values = *self.synth.values();
-            }
+            self.take_values();
             self.preset.patch.modes = modes;
             self.take_preset();
+        }
+    }
+
+    /// Gives the preset a body of another model or material, by their numbers among the controls.
+    pub(crate) fn make(&mut self, made_of: [i32; 2]) {
+        self.take_values();
+        controls::make(&mut self.preset, made_of);
+        self.take_preset();
+    }
+
+    /// The numbers of model and material.
+    pub(crate) fn made_of(&self) -> [i32; 2] {
+        controls::made_of(&self.preset)
+    }
+
+    /// What was turned belongs to the preset that is set next.
+    fn take_values(&mut self) {
+        if !self.is_new {
+            self.preset.patch.values = *self.synth.values();
         }
     }
 
@@ -99,11 +117,34 @@ impl Player {
         }
     }
 
-    /// Turns a macro, counted from 0, to a value from 0 to 100.
-    pub(crate) fn turn(&mut self, frame: u32, number: usize, value: f32) {
-        if let Some(param) = macro_param(number) {
-            self.push(Event { frame, channel: 0, kind: EventKind::Param { param, value } });
+    /// Turns the parameter with a number to a position from 0 to 1.
+    pub(crate) fn turn(&mut self, frame: u32, number: usize, position: f64) {
+        if let Some(info) = controls::info(number) {
+            let value = info.denormalise(position.clamp(0.0, 1.0));
+            // Of a sound that is not set yet it is a part.
+            if self.is_new {
+                self.preset.patch.set(info.param, value);
+            }
+            self.push(Event { frame, channel: 0, kind: EventKind::Param { param: info.param, value } });
         }
+    }
+
+    /// The position of a parameter in the preset, from 0 to 1; 0 for a number that none has.
+    pub(crate) fn position(&self, number: usize) -> f64 {
+        controls::info(number).map_or(0.0, |info| info.normalise(self.preset.patch.get(info.param)))
+    }
+
+    /// Writes a parameter's value at a position as text, and returns its length.
+    pub(crate) fn say(&mut self, number: usize, position: f64) -> usize {
+        let text = |info: &ParamInfo| info.format(info.denormalise(position.clamp(0.0, 1.0)));
+        self.text = controls::info(number).map_or(String::new(), text);
+        self.text.len()
+    }
+
+    /// Writes the list of what can be set, and returns its length.
+    pub(crate) fn list_controls(&mut self) -> usize {
+        self.text = controls::list();
+        self.text.len()
     }
 
     fn push(&mut self, event: Event) {
@@ -141,6 +182,8 @@ impl Player {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sprung::params::Param;
+    use sprung::patch::routes::macro_param;
 
     #[test]
     fn a_preset_of_the_list_is_played_and_shown() {
@@ -159,18 +202,45 @@ mod tests {
     }
 
     #[test]
-    fn a_macro_that_is_turned_is_heard_and_one_that_does_not_exist_is_not() {
-        let played = |number| {
+    fn a_macro_that_is_turned_is_heard_and_a_parameter_that_does_not_exist_is_not() {
+        let played = |number: usize| {
             let mut player = Player::new(48_000.0, 0);
             player.load(Preset::factory().iter().position(|preset| preset.name == "Marimba").unwrap());
-            player.turn(0, number, 100.0);
+            player.turn(0, number, 1.0);
             player.process(1024);
             player.midi(0, [0x90, 60, 100]);
             player.process(1024);
             player.samples(0).to_vec()
         };
-        assert_ne!(played(0), played(99));
-        assert_eq!(played(99), played(7), "the eighth has no name and moves nothing");
+        let number = |place| macro_param(place).unwrap() as usize;
+        assert_ne!(played(number(0)), played(9999));
+        assert_eq!(played(9999), played(number(7)), "the eighth has no name and moves nothing");
+    }
+
+    #[test]
+    fn all_that_can_be_set_is_set() {
+        let mut player = Player::new(48_000.0, 0);
+        player.load(Preset::factory().iter().position(|preset| preset.name == "Marimba").unwrap());
+        assert!(player.list_controls() > 500);
+        let text = player.text().to_owned();
+        let kinds = |kind: &str| text.lines().filter(|line| line.starts_with(kind)).count();
+        let all = ["exciter", "knob", "space", "model", "material", "macro"].map(kinds);
+        assert_eq!(all, [5, 6, 4, 9, 10, 8]);
+        let decay = Param::Decay as usize;
+        player.turn(0, decay, 0.75);
+        player.process(64);
+        player.make([3, 1]);
+        player.process(64);
+        assert_eq!(player.made_of(), [3, 1], "a bell of steel");
+        assert!(player.position(decay) > 0.0 && player.say(decay, player.position(decay)) > 2, "{}", player.text());
+        player.midi(0, [0x90, 60, 100]);
+        assert!(player.process(1024) && player.samples(0).iter().any(|sample| sample.abs() > 1e-3));
+        // Two joined bodies, and a table of modes.
+        for name in ["Church Bell", "Piccolo"] {
+            player.load(Preset::factory().iter().position(|preset| preset.name == name).unwrap());
+            player.make([-1, 4]);
+            assert_eq!(player.made_of()[1], 4, "{name} of glass");
+        }
     }
 
     #[test]
@@ -190,7 +260,7 @@ mod tests {
         assert!(player.drawn().touch(size, [360.0, 210.0]));
         let [x, y] = player.drawn().numbers[..] else { panic!("a point") };
         let modes = player.preset.patch.modes.clone();
-        player.turn(0, 0, 100.0);
+        player.turn(0, macro_param(0).unwrap() as usize, 1.0);
         player.process(64);
         player.strike_at(x.into(), y.into());
         assert_ne!(player.preset.patch.modes, modes);

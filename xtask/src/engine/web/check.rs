@@ -84,14 +84,15 @@ const SPEED: &str = "(async (preset) => {
 })";
 
 /// JavaScript: turns the first macro.
-const TURN: &str = "(input => { input.value = 70; input.dispatchEvent(new Event('input')); })
+const TURN: &str = "(input => { input.value = 0.7; input.dispatchEvent(new Event('input')); })
   (document.querySelector('#macros input'))";
 
 /// JavaScript: whether a note sounds otherwise after a macro was turned.
 const IS_MACRO_HEARD: &str = "import('./wav.js').then(({renderTake}) => {
   const preset = sprung.state.preset.number;
   const note = [{frame: 9600, message: [0x90, 60, 100]}];
-  const [plain, turned] = [[], [{frame: 0, macro: 0, value: 100}]].map((events) =>
+  const param = +document.querySelector('#macros input').dataset.param;
+  const [plain, turned] = [[], [{frame: 0, param, position: 1}]].map((events) =>
     renderTake(sprung.module, [{frame: 0, preset}, ...events, ...note], 48000, 1)[0]);
   return plain.some((block, n) => block.some((sample, k) => sample !== turned[n][k]));
 })";
@@ -171,7 +172,7 @@ fn sounds(page: &mut Page) -> Result<(), String> {
     until(page, "sprung.state.take.filter((event) => event.message).length === 8")?;
     midi::plays(page, heard)?;
     page.value(TURN);
-    until(page, "sprung.state.take.at(-1)?.macro === 0 && sprung.state.take.at(-1)?.value === 70")?;
+    until(page, "sprung.state.take.at(-1)?.position === 0.7")?;
     if page.value(IS_MACRO_HEARD) != json!(true) {
         return Err("a macro that is turned is not heard".to_owned());
     }
@@ -181,6 +182,20 @@ fn sounds(page: &mut Page) -> Result<(), String> {
     page.click("#body");
     until(page, "sprung.state.take.some((event) => event.strike?.length === 2)")?;
     println!("a body is struck elsewhere");
+    // Each kind of chip makes its event, and is heard.
+    for (chip, event) in [
+        ("#exciters .chip:nth-child(2)", "event.param !== undefined && event.position > 0"),
+        ("#spaces .chip:nth-child(2)", "event.param !== undefined && event.position > 0"),
+        ("#models .chip:nth-child(4)", "event.make?.[0] === 3"),
+        ("#materials .chip:nth-child(5)", "event.make?.[1] === 4"),
+    ] {
+        page.value("window.before = sprung.state.take.length");
+        page.click(chip);
+        until(page, &format!("sprung.state.take.slice(before).some((event) => {event})"))?;
+        until(page, "sprung.state.take.at(-1)?.message?.[2] > 0")?;
+        until(page, &format!("document.querySelector('{chip}').ariaPressed === 'true'"))?;
+    }
+    println!("what moves it, what it stands on, what it is and is made of are chosen by a click");
     let peak = page.value(
         "import('./wav.js').then(({renderTake}) => Math.max(...renderTake(sprung.module, sprung.state.take, 48000, 2)[0].map((block) => Math.max(...block))))",
     );
@@ -231,7 +246,7 @@ fn is_measured(found: &Value) -> bool {
 fn take_picture(page: &mut Page, path: &Path) -> Result<(), String> {
     page.call(
         "Emulation.setDeviceMetricsOverride",
-        json!({ "width": 1160, "height": 1010, "deviceScaleFactor": 1, "mobile": false }),
+        json!({ "width": 1160, "height": 1160, "deviceScaleFactor": 1, "mobile": false }),
     );
     let dark = json!({ "features": [{ "name": "prefers-color-scheme", "value": "dark" }] });
     page.call("Emulation.setEmulatedMedia", dark);
