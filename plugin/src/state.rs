@@ -36,7 +36,8 @@ const EXCITERS: [Param; 6] =
 const FORMAT: u64 = 1;
 
 /// The keys of a state.
-const KEYS: [&str; 10] = ["format", "preset", "kit", "values", "positions", "pad", "seed", "window", "zoom", "theme"];
+const KEYS: [&str; 11] =
+    ["format", "preset", "kit", "values", "positions", "pad", "seed", "window", "zoom", "theme", "less_motion"];
 
 /// Size and look of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,10 +47,12 @@ pub(crate) struct View {
     /// In per cent.
     pub(crate) zoom: u32,
     pub(crate) theme: Theme,
+    /// Whether bodies stay at their greatest bend, for eyes that slow swinging tires.
+    pub(crate) less_motion: bool,
 }
 
 /// The view of a new window.
-pub(crate) const VIEW: View = View { size: theme::SIZE, zoom: 100, theme: Theme::Dark };
+pub(crate) const VIEW: View = View { size: theme::SIZE, zoom: 100, theme: Theme::Dark, less_motion: false };
 
 /// Smallest and largest width and height of a window.
 pub(crate) const WINDOW_RANGE: [u32; 2] = [320, 8192];
@@ -81,7 +84,7 @@ pub(crate) struct State {
     pub(crate) positions: [f32; PARAM_COUNT],
     /// Seed of all random numbers.
     pub(crate) seed: u64,
-    /// Size, zoom and theme of the window.
+    /// Size, zoom, theme and motion of the window.
     pub(crate) view: View,
 }
 
@@ -125,6 +128,8 @@ struct Saved {
     /// Left out if it is the default theme.
     #[serde(skip_serializing_if = "Option::is_none")]
     theme: Option<&'static str>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    less_motion: bool,
 }
 
 impl Default for State {
@@ -225,6 +230,7 @@ impl State {
             window: self.view.size,
             zoom: Some(self.view.zoom).filter(|zoom| *zoom != VIEW.zoom),
             theme: Some(self.view.theme).filter(|theme| *theme != VIEW.theme).map(Theme::id),
+            less_motion: self.view.less_motion,
         };
         match &self.playable {
             Playable::Preset(preset) => saved.preset = Some(preset.to_toml()),
@@ -333,7 +339,7 @@ fn read_pad(pad: &Value, complaints: &mut Vec<String>) -> Option<EditedPad> {
     }
 }
 
-/// Size, zoom and theme of the window. Parts that are missing or cannot be read are as in a new window.
+/// Size, zoom, theme and motion of the window. Parts that are missing or cannot be read are as in a new window.
 fn read_view(saved: &Map<String, Value>, complaints: &mut Vec<String>) -> View {
     let mut view = VIEW;
     let [least, most] = WINDOW_RANGE;
@@ -358,6 +364,12 @@ fn read_view(saved: &Map<String, Value>, complaints: &mut Vec<String>) -> View {
         match Theme::ALL.into_iter().find(|known| theme.as_str() == Some(known.id())) {
             Some(theme) => view.theme = theme,
             None => complaints.push(format!("theme: there is none called {theme}")),
+        }
+    }
+    if let Some(less) = saved.get("less_motion") {
+        match less.as_bool() {
+            Some(less) => view.less_motion = less,
+            None => complaints.push(format!("less_motion: {less} is no switch: expected true or false")),
         }
     }
     view

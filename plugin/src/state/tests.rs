@@ -20,7 +20,7 @@ fn wrapped(params: &SprungParams) -> PluginState {
 }
 
 fn odd_view() -> View {
-    View { size: [1000, 500], zoom: 150, theme: Theme::Light }
+    View { size: [1000, 500], zoom: 150, theme: Theme::Light, less_motion: true }
 }
 
 /// A sound with, for each kind of parameter, a value that cannot be restored from its knob position, and with a knob

@@ -34,7 +34,8 @@ export function drawBody(canvas, player, strike) {
 
   function frame(now) {
     requestAnimationFrame(frame);
-    const seconds = Math.min(0.25, (now - before) / 1000);
+    // Who asks for less motion sees how far it bends, and not how it swings.
+    const seconds = matchMedia("(prefers-reduced-motion: reduce)").matches ? -1 : Math.min(0.25, (now - before) / 1000);
     before = now;
     const scale = Math.min(2, devicePixelRatio);
     const [width, height] = size();

@@ -26,12 +26,12 @@ impl Drawn {
         Self { shape, swing: Swing::default(), energies: [0.0; SHOWN], numbers: Vec::new() }
     }
 
-    /// Draws the body some seconds later, in a picture of this size, with a colour (0xRRGGBB) for what moves. The numbers are: how many
+    /// Draws the body some seconds later (at its greatest bend if they are negative), in a picture of this size, with a colour (0xRRGGBB) for what moves. The numbers are: how many
     /// polygons, and for each four corners and its colour; how many lines, and for each how many points, and these; and the place of
     /// the strike, if it is known. Returns how many numbers they are.
     pub(crate) fn draw(&mut self, size: [f32; 2], seconds: f32, glow: u32) -> usize {
         let rect = rect(size);
-        let moved = self.swing.advance(seconds, &self.shape, &self.energies, rect);
+        let moved = self.swing.advance((seconds >= 0.0).then_some(seconds), &self.shape, &self.energies, rect);
         let strike = self.shape.origin.body().map(|body| body.strike);
         let picture = Picture::of(rect, &self.shape.figure, &moved, strike, colour(glow));
         self.write(&picture)

@@ -195,7 +195,7 @@ pub unsafe extern "C" fn energies(player: *mut Player) -> *mut f32 {
     unsafe { at(player) }.drawn().energies.as_mut_ptr()
 }
 
-/// Draws the body of the preset as it is some seconds after the last time, `width` by `height` pixels large, with a colour (0xRRGGBB) for
+/// Draws the body of the preset as it is some seconds after the last time (at its greatest bend if they are negative), `width` by `height` pixels large, with a colour (0xRRGGBB) for
 /// what moves. Returns how many numbers describe it; [`numbers`] returns their address. They are: how many polygons, and for each the
 /// four corners and red, green and blue; how many lines, and for each how many points, and these; and the place of the strike, if it is
 /// known. Allocates.

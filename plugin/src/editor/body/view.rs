@@ -76,7 +76,8 @@ impl BodyView {
                 subject.0 = drag.loaded.clone();
             }
         }
-        let moved = self.swing.advance(controls.seconds, &shape, energies, rect);
+        let seconds = (!controls.params.view().less_motion).then_some(controls.seconds);
+        let moved = self.swing.advance(seconds, &shape, energies, rect);
         let place = self.drag.as_ref().map(|drag| drag.point).or(strike(&shape, shown, controls));
         face::paint(ui.painter(), rect, &shape.figure, &moved, place, controls.palette);
         if shape.origin == Origin::Table && shown.preset().is_some() {

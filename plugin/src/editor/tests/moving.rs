@@ -1,9 +1,10 @@
 //! The moving pictures: the body is struck elsewhere, the mass is pulled and released.
 
 use super::fake_host::Call;
-use super::pictures::{compare, finish};
+use super::pictures::{compare, differing, facing, finish};
 use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
+use crate::editor::window::Face;
 use crate::link::Touch;
 use egui::{Event, Pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
@@ -183,4 +184,27 @@ fn a_mass_that_is_pulled_again_and_again_is_held_each_time() {
         band.passes(50);
         assert_eq!(band.stage.params.link().telemetry.keys(0), 0);
     }
+}
+
+#[test]
+fn with_less_motion_the_body_stands_at_its_greatest_bend() {
+    let mut band = Band::of(facing(Face::Play, "Gong", SIZE, 1.0, Theme::Dark));
+    band.stage.button("Menu");
+    band.stage.button("Less motion");
+    assert!(band.stage.params.view().less_motion);
+    band.strike(&[48]);
+    band.passes(60);
+    let stage = |band: &mut Band| {
+        let picture = band.stage.harness.render().unwrap();
+        image::imageops::crop_imm(&picture, 300, 100, 480, 300).to_image()
+    };
+    let before = stage(&mut band);
+    band.passes(6);
+    let still = differing(&before, &stage(&mut band), 16);
+    band.stage.params.set_view(|view| view.less_motion = false);
+    band.passes(20);
+    let before = stage(&mut band);
+    band.passes(6);
+    let moving = differing(&before, &stage(&mut band), 16);
+    assert!(moving > 200 && still < moving / 4, "{still} {moving}");
 }

@@ -57,6 +57,8 @@ pub(super) enum Request {
     Copy,
     Zoom(u32),
     Theme(Theme),
+    /// Whether bodies are to stand still.
+    LessMotion(bool),
     /// The manual's page about what is shown.
     Manual,
     /// The page of the program's devices.
@@ -229,7 +231,7 @@ fn name_field(ui: &Ui, rect: Rect, header: &Header, is_narrow: bool, controls: &
     request
 }
 
-/// The menu of scales, as far as the smallest window at them fits on the screen, themes, and pages about the window itself.
+/// The menu of scales, as far as the smallest window at them fits on the screen, themes, motion, and pages about the window itself.
 fn view_menu(ui: &Ui, rect: Rect, header: &Header, controls: &mut Controls) -> Option<Request> {
     let (view, is_alone) = (header.view, controls.host.plugin_api() == PluginApi::Standalone);
     let response = button(ui, rect, "≡", "Menu", Look::Plain, controls.palette);
@@ -247,7 +249,8 @@ fn view_menu(ui: &Ui, rect: Rect, header: &Header, controls: &mut Controls) -> O
         let pages =
             [("Manual", Request::Manual), ("Devices", Request::Devices)].into_iter().take(1 + usize::from(is_alone));
         let pages = pages.map(|(name, request)| (name.to_owned(), false, request)).collect();
-        let groups: [Vec<(String, bool, Request)>; 3] = [zooms, themes.to_vec(), pages];
+        let motion = vec![("Less motion".to_owned(), view.less_motion, Request::LessMotion(!view.less_motion))];
+        let groups: [Vec<(String, bool, Request)>; 4] = [zooms, themes.to_vec(), motion, pages];
         for (place, group) in groups.into_iter().enumerate() {
             if place > 0 {
                 ui.separator();

@@ -90,6 +90,7 @@ impl Window {
             }
             Request::Devices => self.over = Some(Over::Devices),
             Request::Theme(theme) => self.params.set_view(|view| view.theme = theme),
+            Request::LessMotion(less) => self.params.set_view(|view| view.less_motion = less),
             Request::Step(places) => self.step(places, host),
             Request::Swap => self.versions.swap(&mut self.history, &self.params, host),
             Request::Variation(VariationRequest::Lock(section)) => {
