@@ -1,9 +1,7 @@
 //! Presets rendered and fitted again: how far the fit's sound is from the preset's.
 
 use super::clock::Clock;
-use super::played::{
-    Outcome, Stereo, fitted_while, in_parallel, log_mel_distance, preset_at, preset_let_go, preset_of_seed,
-};
+use super::played::{Outcome, Stereo, fitted, in_parallel, log_mel_distance, preset_at, preset_let_go, preset_of_seed};
 use sprung::Error;
 use sprung::analysis::log_mel::RATE;
 use sprung::preset::Preset;
@@ -13,8 +11,6 @@ const KEYS: [u8; 3] = [48, 60, 72];
 const ONE: (&str, u8) = ("Marimba", 60);
 /// Number of presets that are fitted in minutes: at equal distances in the bank, each at one of [`KEYS`].
 const MANY: usize = 24;
-/// CPU seconds that a fit may take; one that takes longer has failed.
-const LONGEST: f64 = 120.0;
 /// Another seed than that of the sounds which are fitted.
 const OTHER_SEED: u64 = 1;
 
@@ -62,8 +58,8 @@ const FAR_SHARE: f64 = 0.15;
 const WORST: f64 = 4.0;
 
 /// The distance in dB between a note and its fit.
-fn round_trip(sound: &Stereo, (_, key): &Note, clock: &Clock) -> Result<f64, Error> {
-    let fit = fitted_while(sound, (*key).into(), &mut |_| clock.seconds() < LONGEST)?;
+fn round_trip(sound: &Stereo, (_, key): &Note) -> Result<f64, Error> {
+    let fit = fitted(sound, (*key).into())?;
     // The preset is read from its text, which is what users get.
     let written = Preset::parse(&fit.preset("again", "").to_toml(), "again")?;
     let let_go = fit.release.map(|release| release.seconds);
@@ -87,7 +83,7 @@ const LONGER: f64 = 1.3;
 fn releases_are_fitted_too() -> Outcome<()> {
     for (name, key, seconds, t60) in LET_GO {
         let sound = preset_let_go(Preset::find(name)?, key, Some(seconds), seconds + AFTER);
-        let fit = fitted_while(&sound, key.into(), &mut |_| true)?;
+        let fit = fitted(&sound, key.into())?;
         let release = fit.release.ok_or_else(|| format!("{name}: no release was found"))?;
         let written = Preset::parse(&fit.preset("again", "").to_toml(), "again")?;
         let again = preset_let_go(&written, key, Some(release.seconds), seconds + AFTER);
@@ -105,13 +101,12 @@ fn releases_are_fitted_too() -> Outcome<()> {
 fn told(note: &Note) -> f64 {
     let (preset, key) = note;
     let (sound, clock) = (preset_at(preset, *key), Clock::start());
-    let distance = round_trip(&sound, note, &clock);
+    let distance = round_trip(&sound, note);
     let seconds = clock.seconds();
     // Noise differs with each seed, so a fit may differ from the sound by as much as another seed does.
     let again = log_mel_distance(&sound, &preset_of_seed(preset, *key, OTHER_SEED));
     let text = match &distance {
         Ok(distance) => format!("{distance:.2} dB"),
-        Err(Error::Interrupted) => "too slow".to_owned(),
         Err(error) => format!("{error}"),
     };
     println!("| {} | {key} | {text} | {again:.2} dB | {seconds:.0} |", preset.name);
