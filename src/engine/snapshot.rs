@@ -29,7 +29,7 @@ pub struct SoundingNote {
     /// The values of the sources, in the order of [`Source::ALL`], as routes read them. Those that no route reads may be old.
     pub sources: [f32; Source::ALL.len()],
     /// How far the three oscillators are in their cycle, 0–1, and the two envelopes: the number of the stage (delay, attack, hold,
-    /// decay, sustain, release; 6 when over) and the share of it that has passed.
+    /// decay, sustain, release; 6 when over) and the share of it that has passed. −1 for those that none of its routes reads.
     pub progress: [f32; 5],
 }
 
@@ -204,6 +204,7 @@ mod tests {
         let Some(note) = ensemble.snapshot().notes[0] else { panic!("it sounds") };
         // A quarter of a cycle, and half of the attack, which is stage 1.
         let near = |found: f32, expected: f32| (found - expected).abs() < 0.02;
+        assert_eq!([note.progress[0], note.progress[4]], [-1.0; 2], "no route reads them");
         assert!(near(note.progress[1], 0.25) && near(note.progress[3], 1.5), "{:?}", note.progress);
         let value = |source| note.sources[source as usize];
         assert!(near(value(Source::Lfo2), 1.0), "{:?}", note.sources);

@@ -4,8 +4,9 @@ use super::Preset;
 use super::body::body_of_modes;
 use super::pair::pair_of_modes;
 use crate::params::Param;
+use crate::patch::Mode;
 
-/// T60 in seconds of the loudest mode, below which a sound is short, and above which it is long.
+/// T60 in seconds of the mode with the most energy over its time, below which a sound is short, and above which it is long.
 const LENGTHS: [f32; 2] = [0.5, 4.0];
 
 /// Levels of what strikes the body and of what drives it while a key is held, and the tag of each that is above its least.
@@ -61,7 +62,8 @@ pub(super) fn traits(preset: &Preset) -> Vec<&'static str> {
     if tags.is_empty() && is_on(&BURST) {
         tags.push(BURST.1);
     }
-    let loudest = patch.modes.as_slice().iter().max_by(|a, b| a.level.abs().total_cmp(&b.level.abs()));
+    let energy = |mode: &Mode| mode.level * mode.level * mode.decay;
+    let loudest = patch.modes.as_slice().iter().max_by(|a, b| energy(a).total_cmp(&energy(b)));
     // Roughly: neither damping by frequency nor key tracking is in it.
     let t60 = patch.get(Param::Decay) * loudest.map_or(1.0, |mode| mode.decay);
     tags.push(match () {

@@ -201,7 +201,7 @@ impl Modulators {
 
     /// How far oscillators and envelopes are.
     pub(crate) fn progress(&self) -> [f32; LFOS + ENVELOPES] {
-        self.moving.progress()
+        self.moving.progress(&self.bus)
     }
 
     /// Sets the note's brightness between the setup of the strike and its first frame, and computes the strike's offsets

@@ -84,13 +84,16 @@ impl Moving {
         envelopes.zip(&self.times).for_each(|(envelope, times)| envelope.release(times));
     }
 
-    /// How far the oscillators are in their cycle, and the envelopes in their stages.
-    pub(super) fn progress(&self) -> [f32; LFOS + ENVELOPES] {
+    /// How far the oscillators are in their cycle, and the envelopes in their stages; −1 for those that no route reads.
+    pub(super) fn progress(&self, bus: &Bus) -> [f32; LFOS + ENVELOPES] {
         let state = &self.states[self.now];
-        let lfos = state.lfos.iter().map(Lfo::phase);
-        let mut all =
-            lfos.chain(state.envelopes.iter().zip(&self.times).map(|(envelope, times)| envelope.progress(times)));
-        std::array::from_fn(|_| all.next().unwrap_or_default())
+        std::array::from_fn(|index| match index.checked_sub(LFOS) {
+            None if bus.reads_nth(Source::Lfo1, index) => state.lfos[index].phase(),
+            Some(index) if bus.reads_nth(Source::Envelope1, index) => {
+                state.envelopes[index].progress(&self.times[index])
+            }
+            _ => -1.0,
+        })
     }
 
     /// Copies the phases of the instrument's oscillators to those that are shared.

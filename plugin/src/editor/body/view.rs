@@ -109,8 +109,9 @@ impl BodyView {
             .or(response.hover_pos())
             .map(|pointer| shape.figure.form.nearest(rect, pointer));
         let point = found.map(|(point, _)| shape.confined(point));
-        if let Some(point) = point {
-            *controls.hint = Hint::new(describe(point, shape), "Click or drag to where it is struck.");
+        if let Some(point) = point.filter(|_| found.is_some_and(|(_, distance)| distance <= REACH)) {
+            let title = describe(point, shape).replacen("struck", "a click strikes", 1);
+            *controls.hint = Hint::new(title, "Click, or drag the ring to another place.");
         }
         let is_held = self.drag.is_some();
         let is_pressed = is_clicked || pointer.is_some() && ui.input(|input| input.pointer.any_pressed());

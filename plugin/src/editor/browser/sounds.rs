@@ -1,7 +1,7 @@
 //! The sounds to choose from: the factory's and the user's own, by family, words and favourites.
 
 use sprung::internals::library::{Catalogue, Library, Listed};
-use sprung::preset::{Family, Playable};
+use sprung::preset::{Family, Playable, Preset};
 use sprung_picture::{Figure, small_figure};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -96,9 +96,15 @@ impl Sounds {
         });
         let favourites = favourites.unwrap_or_default();
         let figure = |sound: &Arc<Listed>| {
+            // A kit is drawn as its first drum.
+            let is_drum =
+                |preset: &&Preset| matches!(preset.guide.family, Some(Family::Kick | Family::Snare | Family::Tom));
             let preset = match &sound.playable {
                 Playable::Preset(preset) => preset,
-                Playable::Kit(kit) => &kit.sounds.first()?.1,
+                Playable::Kit(kit) => {
+                    let mut presets = kit.sounds.iter().map(|(_, preset)| preset);
+                    presets.clone().find(is_drum).or(presets.next())?
+                }
             };
             Some((Arc::as_ptr(sound).addr(), small_figure(&preset.patch.modes, preset.guide.family, &preset.tags)))
         };

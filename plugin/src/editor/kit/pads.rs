@@ -9,7 +9,7 @@ use crate::editor::keyboard::grid::velocity;
 use crate::editor::keyboard::held_key::HeldKey;
 use crate::editor::theme::{RADIUS, SMALL, TEXT};
 use crate::editor::widgets::carried;
-use crate::editor::widgets::text::{fitting, least_width, line, paragraph};
+use crate::editor::widgets::text::{fitting, least_width, line, paragraph, width};
 use crate::link::Link;
 use crate::loaded::Loaded;
 use egui::{Align2, DragAndDrop, Id, Key, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 /// Pads in a row of the few and of the many.
 pub(super) const ROWS: [u8; 2] = [4, 8];
-/// Width of a pad below which it has no name.
+/// Width of a pad below which it has its name alone.
 const NAMED: f32 = 60.0;
 /// The gains at the ends of a pad's bar, in dB.
 const GAINS: [f32; 2] = [-36.0, 12.0];
@@ -220,21 +220,21 @@ impl Face<'_> {
             line(painter, inside, Align2::CENTER_CENTER, text, SMALL, muted);
             return;
         };
+        if rect.width() < NAMED {
+            line(painter, inside.with_min_y(top.bottom() - 2.0), Align2::LEFT_CENTER, self.name, SMALL, text);
+            return;
+        }
         let bar = inside.with_min_y(inside.bottom() - 3.0);
-        let (is_named, is_long) = (rect.width() >= NAMED, least_width(painter, self.name, TEXT) > inside.width());
-        let height = if !is_named {
-            0.0
-        } else if is_long {
-            28.0
-        } else {
-            16.0
-        };
+        let is_long = least_width(painter, self.name, TEXT) > inside.width();
+        let height = if is_long { 28.0 } else { 16.0 };
         let named =
             Rect::from_min_max(pos2(inside.left(), bar.top() - 1.0 - height), pos2(inside.right(), bar.top() - 1.0));
-        match (is_named, is_long) {
-            (false, _) => {}
-            (true, true) => _ = paragraph(painter, named, self.name, SMALL, text),
-            (true, false) => _ = line(painter, named, Align2::LEFT_CENTER, self.name, TEXT, text),
+        // Words stay whole.
+        let is_wide = |word: &str| width(painter, word, SMALL) > inside.width();
+        let size = if self.name.split(' ').any(is_wide) { 0.8 * SMALL } else { SMALL };
+        match is_long {
+            true => _ = paragraph(painter, named, self.name, size, text),
+            false => _ = line(painter, named, Align2::LEFT_CENTER, self.name, TEXT, text),
         }
         let picture = Rect::from_min_max(top.left_bottom(), named.right_top()).shrink(2.0);
         if let Some(figure) = self.figure.filter(|_| picture.height() >= 10.0) {

@@ -17,8 +17,8 @@ const ROUNDS: f64 = 2.0;
 const GRIP: f32 = 18.0;
 /// The least distance of two corners at one height.
 const APART: f32 = 14.0;
-/// Most notes whose names are written on the curve, and the height from which on it has room for them.
-const NAMED: usize = 4;
+/// The least distance of two notes that are both named, and the height from which on a curve has room for names.
+const APART_NAMES: f32 = 24.0;
 const LEAST_WITH_NAMES: f32 = 60.0;
 
 /// A corner: the parameter that it moves, where it is, and how far the parameter moves with each pixel.
@@ -142,28 +142,33 @@ impl Curve {
     }
 }
 
-/// Paints where notes are on the curve of a section, the newest last, with the names of as many as stay readable.
+/// Paints where notes are on the curve of a section, the newest last, with names where there is room.
 pub(super) fn paint_notes(ui: &Ui, rect: Rect, section: Section, notes: &[SoundingNote], controls: &Controls) {
     let values: Vec<f64> = section.iter().map(|info| f64::from(controls.heard(info))).collect();
     let palette = controls.palette;
+    let places: Vec<Option<Pos2>> = notes.iter().map(|note| place_of(rect, section[0].param, &values, note)).collect();
     for (order, note) in notes.iter().enumerate().rev() {
-        let Some(at) = place_of(rect, section[0].param, &values, note) else { continue };
+        let Some(at) = places[order] else { continue };
         let radius = if order == 0 { 3.5 } else { 2.5 };
         ui.painter().circle(at, radius, palette.modulation, Stroke::new(1.0, palette.panel));
-        if order < NAMED && rect.height() > LEAST_WITH_NAMES {
+        // Of notes side by side, the newer one is named.
+        let is_free = places[..order].iter().flatten().all(|other: &Pos2| (other.x - at.x).abs() > APART_NAMES);
+        if is_free && rect.height() > LEAST_WITH_NAMES {
             let place = Rect::from_center_size(at - vec2(0.0, 12.0), vec2(40.0, 12.0));
             line(ui.painter(), place, Align2::CENTER_CENTER, &note_name(note.key), SMALL, palette.muted);
         }
     }
 }
 
-/// Where a note is on the curve of an envelope or oscillator, whose first parameter is given; none once an envelope is over.
+/// Where a note is on the curve of an envelope or oscillator, whose first parameter is given; none once an envelope is over, and for a
+/// note that began before its first route was made.
 fn place_of(rect: Rect, first: Param, values: &[f64], note: &SoundingNote) -> Option<Pos2> {
     let at = |x: f64| rect.left() + rect.width() * x as f32;
     match first {
         Param::Envelope1Delay | Param::Envelope2Delay => {
             let number = usize::from(first == Param::Envelope2Delay);
-            let (level, progress) = (note.sources[Source::Envelope1 as usize + number], note.progress[3 + number]);
+            let level = note.sources[Source::Envelope1 as usize + number];
+            let progress = Some(note.progress[3 + number]).filter(|progress| *progress >= 0.0)?;
             let [delay, attack, hold, decay, release] = lengths(&|row| values[row]);
             let total = whole([delay, attack, hold, decay, release]);
             let stages = [delay, attack, hold, decay, SUSTAIN * total, release];
@@ -174,7 +179,8 @@ fn place_of(rect: Rect, first: Param, values: &[f64], note: &SoundingNote) -> Op
         }
         Param::Lfo1Rate | Param::Lfo2Rate | Param::Lfo3Rate => {
             let number = [Param::Lfo1Rate, Param::Lfo2Rate, Param::Lfo3Rate].iter().position(|own| *own == first)?;
-            let (value, phase) = (note.sources[Source::Lfo1 as usize + number], note.progress[number]);
+            let value = note.sources[Source::Lfo1 as usize + number];
+            let phase = Some(note.progress[number]).filter(|phase| *phase >= 0.0)?;
             let round = f64::from(phase) - values[3] / 100.0;
             Some(pos2(at((round - round.floor()) / ROUNDS), rect.center().y - curves::AROUND * rect.height() * value))
         }

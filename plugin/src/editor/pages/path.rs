@@ -91,7 +91,9 @@ pub(super) fn show(
                 clicked = is_clicked.then_some(*part).or(clicked);
                 // A part that is off is no more than its name.
                 if is_tall && lamp.is_none_or(|lamp| lamp.is_on(controls)) && !matches!(part.0, "Body" | "Input") {
-                    let place = item.with_min_x(text.right()).shrink2(vec2(5.0, 6.0));
+                    // A floor is painted beyond its place.
+                    let around = if part.0 == "Space" { vec2(11.0, 12.0) } else { vec2(5.0, 6.0) };
+                    let place = item.with_min_x(text.right()).shrink2(around);
                     let section = sections::sections(&[part.0]).next();
                     section.and_then(|section| sections::picture(ui.painter(), place, section, figure, controls));
                 }

@@ -6,11 +6,11 @@ use crate::editor::controls::Controls;
 use crate::editor::lamps::{self, Lamp, has_effect, is_raised};
 use crate::editor::play::stage;
 use crate::editor::routes::Ring;
-use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, SMALL, TITLE_HEIGHT};
+use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, RADIUS, SMALL, TITLE_HEIGHT};
 use crate::editor::widgets::choice;
 use crate::editor::widgets::knob;
 use crate::editor::widgets::text::{fitting, line};
-use egui::{Align2, Painter, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, Painter, Rect, ScrollArea, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2};
 use sprung::params::{Choice as _, PARAMS, Param, ParamInfo, Space, Unit};
 use sprung::patch::Patch;
 use sprung::preset::Guide;
@@ -110,6 +110,10 @@ pub(super) fn show(
             }
             let palette = controls.palette;
             palette.paint_panel(ui.painter(), panel);
+            if section[0].section == selected {
+                let edge = Stroke::new(1.0, palette.accent.gamma_multiply(0.6));
+                ui.painter().rect_stroke(panel, RADIUS, edge, StrokeKind::Inside);
+            }
             let title = Rect::from_min_size(panel.min + vec2(PADDING, 2.0), vec2(size.x - PADDING, TITLE_HEIGHT - 2.0));
             show_title(ui.painter(), title, section, controls);
             if is_large {

@@ -40,7 +40,7 @@ pub(in crate::editor) fn paint_floor(painter: &Painter, stage: Rect, middle: Rec
     let centre = pos2(middle.center().x, stage.top() + 0.84 * stage.height());
     match space as usize {
         1 => (1..=5).for_each(|ring| {
-            let ring = circle(centre, ring as f32 * 0.085 * stage.width(), 0.26, 48);
+            let ring = circle(centre, ring as f32 * 0.095 * middle.width(), 0.26, 48);
             painter.add(Shape::closed_line(ring, line));
         }),
         2 => (0..3).for_each(|coil| {

@@ -100,7 +100,7 @@ pub(in crate::editor) fn show(
     let place = title.with_min_x(left).with_max_x(right - GAP);
     let says = text::fitting(ui.painter(), says, SMALL, place.width());
     line(ui, place, says, SMALL, palette.muted);
-    let below = Rect::from_min_max(title.left_bottom(), inner.max - vec2(0.0, PADDING / 2.0));
+    let below = Rect::from_min_max(title.left_bottom() + vec2(0.0, 3.0), inner.max - vec2(0.0, PADDING / 2.0));
     match view {
         View::Matrix if patch.routes.iter().next().is_some() => {
             matrix::show(ui, below, (patch, guide, is_editable), controls);

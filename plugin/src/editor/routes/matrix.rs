@@ -15,7 +15,7 @@ use sprung::preset::Guide;
 
 /// Height of the names of what is moved, of a row, and of the value in it.
 const HEAD: f32 = 30.0;
-const ROW: f32 = 32.0;
+const ROW: [f32; 2] = [28.0, 32.0];
 const VALUE: f32 = 14.0;
 /// Width of the names of sources, and the least and greatest width of a column.
 const SOURCES: f32 = 104.0;
@@ -39,15 +39,17 @@ pub(super) fn show(
     targets.dedup();
     let [least, most] = COLUMN;
     let width = ((rect.width() - SOURCES - 2.0 * GAP) / targets.len() as f32).clamp(least, most);
+    let [lowest, highest] = ROW;
+    let row_height = ((rect.height() - HEAD) / sources.len() as f32).clamp(lowest, highest);
     let mut inner = ui.new_child(UiBuilder::new().id_salt("matrix").max_rect(rect));
     // That there are more must be seen.
     inner.spacing_mut().scroll.dormant_handle_opacity = 0.6;
     ScrollArea::both().auto_shrink(false).show(&mut inner, |ui| {
-        let size = vec2(SOURCES + width * targets.len() as f32, HEAD + ROW * sources.len() as f32);
+        let size = vec2(SOURCES + width * targets.len() as f32, HEAD + row_height * sources.len() as f32);
         let (area, _) = ui.allocate_exact_size(size, Sense::hover());
         let cell = |column: usize, row: usize| {
-            let corner = area.min + vec2(SOURCES + width * column as f32, HEAD + ROW * row as f32);
-            Rect::from_min_size(corner, vec2(width, ROW)).shrink(1.5)
+            let corner = area.min + vec2(SOURCES + width * column as f32, HEAD + row_height * row as f32);
+            Rect::from_min_size(corner, vec2(width, row_height)).shrink(1.5)
         };
         for (column, target) in targets.iter().enumerate() {
             let place = cell(column, 0).with_min_y(area.top()).with_max_y(area.top() + HEAD - 2.0);
