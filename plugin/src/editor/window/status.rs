@@ -124,7 +124,8 @@ fn show_tooltip(ui: &Ui, Hint { title, help }: &Hint) {
     if rested < REST {
         ui.ctx().request_repaint_after(Duration::from_secs_f32(REST - rested));
     } else if !is_down && !Popup::is_any_open(ui.ctx()) && !ui.ctx().egui_wants_keyboard_input() {
-        let id = Id::unique("hint");
+        // egui keeps the size of what it showed under an id: another hint would be broken to that width.
+        let id = Id::unique(("hint", title.as_str()));
         let tip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), id, PopupAnchor::Pointer).gap(OFFSET);
         tip.width(WIDEST).show(|ui| {
             ui.strong(title);
