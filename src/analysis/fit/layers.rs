@@ -14,21 +14,19 @@ const HARDNESS_ROUTE: usize = 0;
 const DECAY_ROUTE: usize = 1;
 const GAIN_ROUTE: usize = 2;
 
-/// A take's draft and its level.
+/// A take's draft, and what was measured of the take.
 pub(super) struct Layer {
     pub(super) draft: Draft,
     /// RMS of its first 50 ms.
     pub(super) level: f64,
+    /// The T60 in seconds with which it loses its first 20 dB. No mode of the draft tells that: one can be a knock, or hum on.
+    pub(super) t60: f64,
 }
 
 impl Layer {
     /// Its key as a fractional MIDI key.
     pub(super) fn key(&self) -> f64 {
         self.draft.key()
-    }
-
-    fn t60(&self) -> f64 {
-        self.draft.main().map_or(1.0, |partial| partial.t60)
     }
 }
 
@@ -69,7 +67,7 @@ pub(super) fn route(mut patch: Patch, layers: &[Layer], base: usize) -> Patch {
             patch = patch.with_route(HARDNESS_ROUTE, Source::Velocity, Param::MalletHardness, amount);
         }
     }
-    let decays = layers.iter().map(|layer| ((layer.key() - 60.0) / 60.0, log(layer.t60())));
+    let decays = layers.iter().map(|layer| ((layer.key() - 60.0) / 60.0, log(layer.t60)));
     if let Some(slope) = slope(decays) {
         let info = Param::Decay.info();
         let travel = log(f64::from(info.max) / f64::from(info.min));
@@ -125,7 +123,11 @@ mod tests {
     use crate::patch::routes::amount_param;
 
     fn layer(note: f64, velocity: f64, hardness: f64) -> Layer {
-        Layer { draft: Draft { note, velocity, hardness: Some(hardness), ..draft([0.5, 0.1]) }, level: velocity }
+        Layer {
+            draft: Draft { note, velocity, hardness: Some(hardness), ..draft([0.5, 0.1]) },
+            level: velocity,
+            t60: 2.0,
+        }
     }
 
     #[test]
@@ -137,7 +139,7 @@ mod tests {
     #[test]
     fn routes_begin_at_what_the_patch_has() {
         let mut layers = [layer(440.0, 0.5, 0.3), layer(440.0, 1.0, 0.6), layer(880.0, 1.0, 0.6)];
-        layers[2].draft.partials.iter_mut().for_each(|partial| partial.t60 *= 0.5);
+        layers[2].t60 = 1.0;
         let mut tuned = layers[1].draft.patch();
         tuned.set(Param::MalletHardness, 80.0);
         tuned.set(Param::Decay, 2.5);

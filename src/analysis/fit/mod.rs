@@ -164,8 +164,11 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         }
         fits.push((draft, strike));
     }
-    let layer =
-        |((draft, _), take): (&(draft::Draft, _), &Prepared)| Layer { draft: draft.clone(), level: take.level() };
+    let layer = |((draft, _), take): (&(draft::Draft, _), &Prepared)| Layer {
+        draft: draft.clone(),
+        level: take.level(),
+        t60: take.t60(),
+    };
     let mut layers: Vec<Layer> = fits.iter().zip(&prepared).map(layer).collect();
     let base = layers::base(&layers);
     let follow = layers::follow(&layers, base);

@@ -102,8 +102,11 @@ mod tests {
     #[test]
     fn takes_that_are_alike_are_doubted() {
         let takes = ["a", "b", "c"].map(take);
-        let layers =
-            [0.5, 1.0, 0.5].map(|velocity| Layer { draft: Draft { velocity, ..draft([0.5, 0.1]) }, level: 0.1 });
+        let layers = [0.5, 1.0, 0.5].map(|velocity| Layer {
+            draft: Draft { velocity, ..draft([0.5, 0.1]) },
+            level: 0.1,
+            t60: 1.0,
+        });
         let warnings = of_takes(&takes, &layers);
         assert!(
             warnings[0].starts_with("c: it has the key and velocity of a (") && warnings.len() == 1,
