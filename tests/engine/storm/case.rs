@@ -4,7 +4,7 @@
 //! removing some of its records. This makes failing cases easy to shrink.
 
 use sprung::engine::{Event, EventKind, Expression, NoteId, Notes};
-use sprung::params::Param;
+use sprung::params::{Choice as _, Limiter, PARAMS, Param};
 use sprung::patch::routes::{MAX_ROUTES, Response, Route, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
@@ -153,13 +153,12 @@ pub(crate) fn param(number: u8) -> Param {
     id.and_then(Param::from_id).expect("an id of the table")
 }
 
-/// The patch with the limiter switched off.
-pub(crate) fn without_limiter(mut patch: Patch) -> Patch {
-    if let Some(limiter) = Param::from_id("limiter") {
-        let off = limiter.info().choices.iter().position(|choice| *choice == "off");
-        patch.set(limiter, off.expect("a limiter can be off") as f32);
-    }
-    patch
+/// The patch without what stands behind the voices, which the bound does not know, and without the limiter, which would hide sounds
+/// above it.
+pub(crate) fn voices_alone(patch: Patch) -> Patch {
+    let behind = PARAMS.iter().filter(|info| info.param.is_behind_voices());
+    let alone = behind.fold(patch, |patch, info| patch.with(info.param, info.default));
+    alone.with(Param::Limiter, Limiter::Off.value())
 }
 
 /// Half of the byte values select one of these; the others cover 1–768 kHz in equal ratios.
@@ -238,10 +237,10 @@ pub(crate) fn decode(bytes: &[u8]) -> Case {
     }
     events.retain(|event| event.frame < MAX_FRAMES);
     let frames = now.saturating_add(1 + wait(tail)).min(MAX_FRAMES) as usize;
-    let program = |preset: &Preset| without_limiter(preset.patch.clone());
+    let program = |preset: &Preset| voices_alone(preset.patch.clone());
     let programs = factory.iter().take(8).map(program).collect();
     let (ensemble, outputs, block) = (form & 128 != 0, form & 64 != 0, BLOCKS[usize::from(form & 7)]);
-    let (sample_rate, seed, patch) = (sample_rate(rate), u64::from(seed), without_limiter(patch));
+    let (sample_rate, seed, patch) = (sample_rate(rate), u64::from(seed), voices_alone(patch));
     Case { sample_rate, seed, ensemble, outputs, patch, programs, block, events, frames }
 }
 

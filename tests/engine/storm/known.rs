@@ -1,6 +1,6 @@
 //! Named cases that once exploded.
 
-use super::case::{Case, without_limiter};
+use super::case::{Case, voices_alone};
 use super::check::check;
 use crate::events::{event, off, on};
 use sprung::engine::{Event, EventKind};
@@ -14,7 +14,7 @@ use sprung::units::key_from_frequency;
 /// A case on one synth at 48 kHz.
 fn case(patch: Patch, events: Vec<Event>, frames: usize) -> Case {
     let (sample_rate, seed, ensemble, programs, block) = (48_000.0, 1, false, vec![], 512);
-    Case { sample_rate, seed, ensemble, outputs: false, patch: without_limiter(patch), programs, block, events, frames }
+    Case { sample_rate, seed, ensemble, outputs: false, patch: voices_alone(patch), programs, block, events, frames }
 }
 
 fn preset(name: &str) -> Patch {
