@@ -12,11 +12,11 @@ const BROWSE: [i16; 2] = [613, 23];
 const SAVE: [i16; 2] = [668, 23];
 /// The tab *Sound*: a new window shows *Play*.
 const SOUND: [i16; 2] = [158, 23];
-const FIRST_SOUND: [i16; 2] = [266, 117];
-const MODEL_TAB: [i16; 2] = [427, 326];
+const FIRST_SOUND: [i16; 2] = [200, 150];
+const MODEL_TAB: [i16; 2] = [486, 306];
 const MODEL: [i16; 2] = [137, 400];
 const MATERIAL: [i16; 2] = [137, 425];
-const SPACE_TAB: [i16; 2] = [672, 342];
+const SPACE_TAB: [i16; 2] = [888, 337];
 const SPACE: [i16; 2] = [415, 396];
 const SIZE_VALUE: [i16; 2] = [489, 430];
 const MIX_VALUE: [i16; 2] = [415, 562];
