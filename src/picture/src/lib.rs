@@ -13,7 +13,7 @@ mod swing;
 pub use figure::{Drum, Figure, tint};
 pub use form::Form;
 pub use origin::{Origin, model_name};
-pub use shape::{BodyShape, small_figure, suggested_body};
+pub use shape::{BodyShape, or_suggested, small_figure, suggested_body};
 pub use surface::Picture;
 pub use swing::Swing;
 

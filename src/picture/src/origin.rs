@@ -2,7 +2,7 @@
 
 use sprung::internals::editor::{body_of_modes, modes_of_body, modes_of_pair, pair_of_modes};
 use sprung::patch::ModeTable;
-use sprung::sound::bodies::{Body, Model, Pitch, Point};
+use sprung::sound::bodies::{Body, MATERIALS, Model, Pitch, Point};
 use sprung::sound::pairs::{Link, Pair};
 
 /// The origin of a sound's modes.
@@ -66,6 +66,13 @@ impl Origin {
             Self::FromPair(pair) => Some(pair),
             _ => None,
         }
+    }
+
+    /// The same with the body that is struck of another material; `None` without a body, and for a material that there is not.
+    pub fn of_material(&self, id: &str) -> Option<Self> {
+        let mut other = self.clone();
+        other.body_mut()?.material = *MATERIALS.iter().find(|material| material.id == id)?;
+        Some(other)
     }
 
     /// Lets the body be struck elsewhere, and computes its modes; `None` for a table, or if they cannot be computed.
@@ -148,7 +155,6 @@ pub fn model_name(id: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sprung::sound::bodies::MATERIALS;
 
     #[test]
     fn a_chosen_material_stays_where_the_new_body_is_made_of_one() {
@@ -157,7 +163,7 @@ mod tests {
         let material =
             |origin: &Origin, id: &str| origin.with_model(false, Some(model(id))).body().unwrap().material.id;
         assert_eq!(material(&origin, "marimba"), "rosewood", "nobody has chosen the bell's bronze");
-        origin.body_mut().unwrap().material = *MATERIALS.iter().find(|material| material.id == "glass").unwrap();
+        origin = origin.of_material("glass").unwrap();
         assert_eq!(["marimba", "open_tube"].map(|id| material(&origin, id)), ["glass", "air"]);
         assert_eq!(material(&origin.with_model(false, Some(model("open_tube"))), "marimba"), "rosewood");
     }

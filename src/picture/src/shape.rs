@@ -52,6 +52,14 @@ pub fn suggested_body(family: Option<Family>, tags: &[String]) -> Body {
     body
 }
 
+/// The same origin; for a table of modes, the body that it is drawn as.
+pub fn or_suggested(origin: &Origin, family: Option<Family>, tags: &[String]) -> Origin {
+    match origin {
+        Origin::Table => Origin::FromBody(Box::new(suggested_body(family, tags))),
+        other => other.clone(),
+    }
+}
+
 /// The figure of a sound's body in a picture of the size of a letter or two: of its model's, or of one that suits its family.
 pub fn small_figure(modes: &ModeTable, family: Option<Family>, tags: &[String]) -> Figure {
     match Origin::of(modes).with_places().body() {

@@ -61,8 +61,8 @@ export function panel(element, player, set, strike) {
   const models = controls("model").map(({ name }, model) => {
     const canvas = Object.assign(document.createElement("canvas"), { width: 96, height: 56 });
     const gold = getComputedStyle(document.documentElement).getPropertyValue("--gold").trim();
-    const draw = () => paint(canvas.getContext("2d"), player.tile(model, 96, 56, Number.parseInt(gold.slice(1), 16)), gold);
-    return { draw, light: chip(element("models"), name, () => make(model, -1), canvas) };
+    paint(canvas.getContext("2d"), player.tile(model, 96, 56, Number.parseInt(gold.slice(1), 16)), gold);
+    return chip(element("models"), name, () => make(model, -1), canvas);
   });
   const materials = controls("material").map(({ name, numbers: [colour] }, material) => {
     const disc = Object.assign(document.createElement("span"), { className: "disc" });
@@ -71,7 +71,7 @@ export function panel(element, player, set, strike) {
   });
   function lightBody() {
     const [model, material] = player.madeOf();
-    models.forEach(({ light }, number) => light(number === model));
+    models.forEach((light, number) => light(number === model));
     materials.forEach((light, number) => light(number === material));
   }
 
@@ -103,7 +103,6 @@ export function panel(element, player, set, strike) {
     remembered.clear();
     all.forEach(({ params }) => params.forEach((param) => positions.set(param, player.position(param))));
     all.forEach((one) => one.show());
-    models.forEach(({ draw }) => draw());
     lightBody();
   };
 }

@@ -3,9 +3,9 @@
 use sprung::params::{PARAMS, Param, ParamInfo};
 use sprung::patch::routes::macro_param;
 use sprung::preset::Preset;
-use sprung::sound::bodies::{MATERIALS, Model};
+use sprung::sound::bodies::Model;
 use sprung_picture::play::{DISCS, ESSENTIALS, EXCITERS, FLOORS, MODELS};
-use sprung_picture::{Origin, suggested_body, tint};
+use sprung_picture::{Origin, or_suggested, tint};
 
 /// All that can be set, a line for each: `exciter`, its name, the number of its level, that of another parameter that is least while
 /// it is off or −1, and the position at which it starts; `knob`, its name and number; `space`, its name, the parameter's number and
@@ -54,19 +54,13 @@ pub(crate) fn made_of(preset: &Preset) -> [i32; 2] {
 /// becomes the body as which it is drawn, of two joined bodies the first one stays. The decay is moved along, as in the plugin.
 pub(crate) fn make(preset: &mut Preset, [model, material]: [i32; 2]) {
     let before = Origin::of(&preset.patch.modes);
-    let mut made = match &before {
-        Origin::Table => Origin::FromBody(Box::new(suggested_body(preset.guide.family, &preset.tags))),
-        Origin::FromPair(_) => before.with_model(true, None),
-        Origin::FromBody(_) => before.clone(),
-    };
+    // Of one body this changes nothing.
+    let mut made = or_suggested(&before, preset.guide.family, &preset.tags).with_model(true, None);
     if let Some((id, _)) = usize::try_from(model).ok().and_then(|model| MODELS.get(model)) {
         made = made.with_model(false, Model::find(id));
     }
-    let id = usize::try_from(material).ok().and_then(|material| DISCS.get(material));
-    let material = id.and_then(|id| MATERIALS.iter().find(|material| material.id == *id));
-    if let (Some(body), Some(material)) = (made.body_mut(), material) {
-        body.material = *material;
-    }
+    let material = usize::try_from(material).ok().and_then(|material| DISCS.get(material));
+    made = material.and_then(|id| made.of_material(id)).unwrap_or(made);
     let Ok(Some(modes)) = made.modes() else { return };
     preset.patch.modes = modes;
     let decay = f64::from(preset.patch.get(Param::Decay));

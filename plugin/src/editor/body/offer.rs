@@ -7,7 +7,7 @@ use crate::editor::theme::{GAP, SMALL};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::paragraph;
 use egui::{Rect, Shape, Ui};
-use sprung_picture::{Origin, model_name, suggested_body};
+use sprung_picture::{Origin, model_name, or_suggested, suggested_body};
 
 /// What comes of a body for a table of modes.
 pub(crate) const TAKES: &str = "A body of it takes the place of the table of modes.";
@@ -32,15 +32,7 @@ pub(crate) fn suggestion(origin: &Origin, shown: &Shown) -> (String, Origin) {
     let suggested = suggested_body(shown.family(), shown.tags());
     let name = model_name(suggested.model.id());
     let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-    let deed = format!("Make it {article} {name}");
-    if *origin != Origin::Table {
-        return (deed, origin.clone());
-    }
-    let mut made = origin.with_model(false, Some(&suggested.model));
-    if let Some(body) = made.body_mut() {
-        body.material = suggested.material;
-    }
-    (deed, made)
+    (format!("Make it {article} {name}"), or_suggested(origin, shown.family(), shown.tags()))
 }
 
 /// Says that a kit's sounds have bodies of their own, and offers to edit the pad that is shown.

@@ -197,8 +197,7 @@ impl Controls<'_> {
     /// The modulated values of a parameter in the sounding notes, the newest note's first. Notes that do not modulate
     /// it are skipped.
     pub(super) fn modulated(&self, info: &ParamInfo) -> impl Iterator<Item = f32> {
-        let of = |note: &SoundingNote| note.moved.iter().flatten().find(|(param, _)| *param == info.param).copied();
-        self.notes.iter().filter_map(of).map(|(_, value)| value)
+        self.notes.iter().filter_map(|note| moved_in(note, info))
     }
 
     /// Moves a knob; [`Controls::release`] ends the gesture.
@@ -225,4 +224,9 @@ impl Controls<'_> {
         self.turn(info, info.normalise(value));
         self.release();
     }
+}
+
+/// The modulated value of a parameter in a note, if that modulates it.
+pub(super) fn moved_in(note: &SoundingNote, info: &ParamInfo) -> Option<f32> {
+    note.moved.iter().flatten().find(|(param, _)| *param == info.param).map(|(_, value)| *value)
 }

@@ -144,6 +144,9 @@ impl Curve {
 
 /// Paints where notes are on the curve of a section, the newest last, with names where there is room.
 pub(super) fn paint_notes(ui: &Ui, rect: Rect, section: Section, notes: &[SoundingNote], controls: &Controls) {
+    if notes.is_empty() {
+        return;
+    }
     let values: Vec<f64> = section.iter().map(|info| f64::from(controls.heard(info))).collect();
     let palette = controls.palette;
     let places: Vec<Option<Pos2>> = notes.iter().map(|note| place_of(rect, section[0].param, &values, note)).collect();

@@ -201,7 +201,5 @@ fn field(ui: &Ui, rect: Rect, name: &str, value: &str, names: &[String], control
 
 /// The body of another material.
 fn made_of(origin: &Origin, id: &str) -> Option<(Origin, String)> {
-    let mut changed = origin.clone();
-    changed.body_mut()?.material = *MATERIALS.iter().find(|material| material.id == id)?;
-    Some((changed, format!("material {}", id.replace('_', " "))))
+    Some((origin.of_material(id)?, format!("material {}", id.replace('_', " "))))
 }

@@ -6,7 +6,7 @@ pub(super) mod list;
 mod matrix;
 
 use crate::editor::controls::gestures::load;
-use crate::editor::controls::{Controls, Said};
+use crate::editor::controls::{Controls, Said, moved_in};
 use crate::loaded::positions_of;
 use crate::state::State;
 use egui::{Id, Popup, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo};
@@ -81,10 +81,7 @@ impl Ring {
 /// Where each sounding note is on the bar of a route, from 0 to 1, the newest note first.
 fn now(place: usize, route: &Route, controls: &Controls) -> Vec<f32> {
     let info = amount_param(place).info();
-    let amount = |note: &SoundingNote| {
-        let moved = note.moved.iter().flatten().find(|(param, _)| *param == info.param);
-        moved.map_or(controls.heard(info), |(_, amount)| *amount)
-    };
+    let amount = |note: &SoundingNote| moved_in(note, info).unwrap_or(controls.heard(info));
     let on_bar = |note: &SoundingNote| (0.5 + 0.5 * note.travel(route, amount(note))).clamp(0.0, 1.0);
     controls.notes.iter().map(on_bar).collect()
 }
