@@ -132,9 +132,10 @@ impl Details {
                 }
                 Playable::Kit(kit) => [format!("kit of {} pads", kit.pads.len()), String::new()],
             };
+            let author = Some(sound.playable.author()).filter(|author| !author.is_empty());
             let lines = [
                 sound.tags().join("  "),
-                format!("by {}", sound.playable.author()),
+                author.map_or(String::new(), |author| format!("by {author}")),
                 keys,
                 macros,
                 String::new(),

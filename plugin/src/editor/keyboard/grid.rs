@@ -31,6 +31,7 @@ pub(crate) struct Cell {
     pub(crate) group: u8,
     /// Whether the cell belongs together with the cell under the pointer.
     pub(crate) is_marked: bool,
+    pub(crate) is_chosen: bool,
 }
 
 /// The grid's state.
@@ -56,7 +57,7 @@ impl KeyGrid {
     }
 
     /// Shows the cells of all keys; `down` has one bit for each held key. A click plays the key, louder towards the
-    /// lower edge.
+    /// lower edge. Returns the key that was clicked.
     pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
@@ -65,7 +66,7 @@ impl KeyGrid {
         down: u128,
         cell: &dyn Fn(u8) -> Cell,
         controls: &Controls,
-    ) {
+    ) -> Option<u8> {
         // A row is an octave, half or a third of one: the most keys of which each has room for the longest text.
         let of = |cell: Cell| {
             let number = if cell.group > 0 { NUMBER } else { 0.0 };
@@ -76,7 +77,7 @@ impl KeyGrid {
         let columns = [12, 6, 4].into_iter().find(|columns| rect.width() / *columns as f32 >= least).unwrap_or(4);
         let rows = 128_usize.div_ceil(columns);
         let height = (rect.height() / rows as f32).max(HEIGHT);
-        let (mut hovered, mut touched) = (None, None);
+        let (mut hovered, mut touched, mut clicked) = (None, None, None);
         let mut inner = ui.new_child(UiBuilder::new().id_salt(("keys", name)).max_rect(rect));
         ScrollArea::vertical().id_salt(("keys", name)).auto_shrink(false).show(&mut inner, |ui| {
             let whole = ui.available_width();
@@ -101,6 +102,9 @@ impl KeyGrid {
                 if response.hovered() {
                     hovered = Some(key);
                 }
+                if response.clicked() {
+                    clicked = Some(key);
+                }
                 if response.is_pointer_button_down_on() {
                     let at = response.interact_pointer_pos();
                     touched = Some((key, at.map_or(0.8, |at| velocity(place, at))));
@@ -110,6 +114,7 @@ impl KeyGrid {
         });
         (self.hovered, self.is_seen) = (hovered, true);
         self.held.follow(touched, controls.params.link());
+        clicked
     }
 }
 
@@ -125,7 +130,11 @@ fn paint(ui: &Ui, rect: Rect, key: u8, cell: &Cell, is_down: bool, controls: &Co
         (_, true) => (palette.raised, palette.text, palette.muted),
         (_, false) => (palette.panel, palette.muted, palette.muted),
     };
-    let edge = if cell.is_marked { Stroke::new(1.5, palette.modulation) } else { Stroke::new(1.0, palette.outline) };
+    let edge = match (cell.is_chosen, cell.is_marked) {
+        (true, _) => Stroke::new(1.5, palette.accent),
+        (_, true) => Stroke::new(1.5, palette.modulation),
+        _ => Stroke::new(1.0, palette.outline),
+    };
     painter.rect(rect, 3.0, fill, edge, StrokeKind::Inside);
     let inside = rect.shrink2(vec2(4.0, 0.0));
     let note = line(painter, inside, Align2::LEFT_CENTER, &note_name(key), SMALL, muted);

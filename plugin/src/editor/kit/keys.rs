@@ -8,15 +8,23 @@ use sprung::params::Param;
 use sprung::sound::Pad;
 use sprung::units::note_name;
 
-/// Shows the keys of a sound or kit; `down` has one bit for each held key.
-pub(super) fn show(ui: &mut Ui, rect: Rect, grid: &mut KeyGrid, shown: &Shown, down: u128, controls: &mut Controls) {
+/// Shows the keys of a sound or kit; `down` has one bit for each held key. Returns the key that was clicked.
+pub(super) fn show(
+    ui: &mut Ui,
+    rect: Rect,
+    grid: &mut KeyGrid,
+    shown: &Shown,
+    (down, chosen): (u128, Option<u8>),
+    controls: &mut Controls,
+) -> Option<u8> {
     let kit = &shown.loaded().kit;
     let group = controls.value(Param::Choke.info());
     let choke = |pad: &Pad| kit.choke(pad, group);
     let marked = grid.hovered().and_then(|key| kit.pad(key)).map(choke).filter(|group| *group > 0);
     let guide = shown.guide();
     let cell = |key: u8| {
-        let Some(pad) = kit.pad(key) else { return Cell::default() };
+        let is_chosen = chosen == Some(key);
+        let Some(pad) = kit.pad(key) else { return Cell { is_chosen, ..Cell::default() } };
         let is_kit = shown.preset().is_none();
         let group = choke(pad);
         Cell {
@@ -24,11 +32,14 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, grid: &mut KeyGrid, shown: &Shown, d
             is_on: is_kit || (guide.lowest..=guide.highest).contains(&key),
             group,
             is_marked: marked == Some(group),
+            is_chosen,
         }
     };
-    grid.show(ui, rect, "Pad", down, &cell, controls);
-    let Some(key) = grid.hovered() else { return };
-    *controls.hint = Hint::new(note_name(key), about(key, shown, group));
+    let clicked = grid.show(ui, rect, "Pad", down, &cell, controls);
+    if let Some(key) = grid.hovered() {
+        *controls.hint = Hint::new(note_name(key), about(key, shown, group));
+    }
+    clicked
 }
 
 /// A pad in words. `group` is the value of the parameter of choke groups.

@@ -133,7 +133,9 @@ impl KitPage {
         // Before the pads, which choose another: what is typed for this one is taken first.
         let mut deed = self.detail.show(ui, detail.shrink(PADDING), key, (shown, figures), controls);
         if self.shows_keys {
-            keys::show(ui, below, &mut self.keys, shown, down, controls);
+            if let Some(key) = keys::show(ui, below, &mut self.keys, shown, (down, Some(key)), controls) {
+                self.pads.choose(key);
+            }
         } else {
             deed = self.pads.show(ui, below.expand(2.0), (shown, figures, down), controls).or(deed);
         }
@@ -154,12 +156,14 @@ impl KitPage {
         let palette = controls.palette;
         let rect = rect.with_max_y(rect.bottom() - 4.0);
         let cell = |left: f32, width: f32| Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()));
-        let [lowest, highest] = self.pads.keys();
+        // The keys are all of them.
+        let [lowest, highest] = if self.shows_keys { [0, 127] } else { self.pads.keys() };
+        let look = if self.shows_keys { Look::Disabled } else { Look::Plain };
         for (place, (text, name, octaves)) in
             [("‹", "Pads an octave lower", -1), ("›", "Pads an octave higher", 1)].into_iter().enumerate()
         {
             let at = cell(rect.left() + 112.0 * place as f32, 24.0);
-            if button(ui, at, text, name, Look::Plain, palette).clicked() {
+            if button(ui, at, text, name, look, palette).clicked() {
                 self.pads.go(octaves);
             }
         }
@@ -249,7 +253,7 @@ impl KitPage {
             None => format!("All keys play {}: those that suit it are bright.", controls.params.name()),
         };
         line(ui.painter(), says, Align2::LEFT_CENTER, &text, TEXT, palette.muted);
-        keys::show(ui, below, &mut self.keys, shown, down, controls);
+        keys::show(ui, below, &mut self.keys, shown, (down, None), controls);
         help_tab(ui, help, "kits", controls).then_some(Request::Manual)
     }
 }

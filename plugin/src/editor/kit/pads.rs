@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 /// Pads in a row of the few and of the many.
 pub(super) const ROWS: [u8; 2] = [4, 8];
-/// Width of a pad below which it has its name alone.
+/// Width of a pad below which it has a name alone: its sound's, or, if it is empty, its key's.
 const NAMED: f32 = 60.0;
 /// The gains at the ends of a pad's bar, in dB.
 const GAINS: [f32; 2] = [-36.0, 12.0];
@@ -207,11 +207,14 @@ impl Face<'_> {
             _ => Stroke::new(1.0, if self.pad.is_some() { palette.outline } else { palette.line }),
         };
         painter.rect(rect, RADIUS, fill, edge, StrokeKind::Inside);
+        if rect.width() < NAMED && self.pad.is_some() {
+            paragraph(painter, rect.shrink2(vec2(2.5, 1.0)), self.name, 0.8 * SMALL, text);
+            return;
+        }
         let inside = rect.shrink2(vec2(6.0, 3.0));
         let top = inside.with_max_y(inside.top() + 14.0);
         line(painter, top, Align2::LEFT_CENTER, &note_name(self.key), SMALL, muted);
-        // A narrow pad has room for one of both; its outline says it, too.
-        if self.group > 0 && rect.width() >= NAMED {
+        if self.group > 0 {
             let colour = if self.is_down { palette.on_accent } else { palette.text };
             line(painter, top, Align2::RIGHT_CENTER, &self.group.to_string(), SMALL, colour);
         }
@@ -220,10 +223,6 @@ impl Face<'_> {
             line(painter, inside, Align2::CENTER_CENTER, text, SMALL, muted);
             return;
         };
-        if rect.width() < NAMED {
-            line(painter, inside.with_min_y(top.bottom() - 2.0), Align2::LEFT_CENTER, self.name, SMALL, text);
-            return;
-        }
         let bar = inside.with_min_y(inside.bottom() - 3.0);
         let is_long = least_width(painter, self.name, TEXT) > inside.width();
         let height = if is_long { 28.0 } else { 16.0 };

@@ -46,7 +46,10 @@ pub(in crate::editor) fn paint(
         let mut points: Vec<Pos2> = points.into_iter().map(place).collect();
         // A line segment between two equal points has no direction.
         points.dedup_by(|next, point| (*next - *point).length() < 0.05);
-        painter.add(egui::Shape::line(points, stroke));
+        painter.add(match outline.is_filled {
+            true => egui::Shape::convex_polygon(points, colour, Stroke::NONE),
+            false => egui::Shape::line(points, stroke),
+        });
     }
     for mark in outline.marks {
         painter.circle(place(mark), 3.0, palette.panel, Stroke::new(1.5, colour));

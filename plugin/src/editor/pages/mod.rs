@@ -16,7 +16,7 @@ use crate::editor::theme::GAP;
 use crate::editor::theme::layout::Layout;
 use crate::editor::widgets::buttons::help_tab;
 use crate::link::Link;
-use egui::{Rect, Ui, pos2, vec2};
+use egui::{Rect, Ui, Vec2, pos2, vec2};
 use path::Part;
 use sections::PAGES;
 use sprung::params::PARAMS;
@@ -43,9 +43,9 @@ pub(super) enum Request {
 
 /// The state of the pages.
 pub(super) struct Pages {
-    /// The selected part of the sound's way, and whether it was selected in this pass.
+    /// The selected part of the sound's way, and the size in which it was last scrolled to.
     part: Part,
-    is_new: bool,
+    seen: Vec2,
     body: BodyPage,
     tuning: TuningPage,
     /// The picture of the body, read again only when another sound is shown.
@@ -55,7 +55,7 @@ pub(super) struct Pages {
 impl Default for Pages {
     fn default() -> Self {
         let (body, tuning) = (BodyPage::default(), TuningPage::default());
-        Self { part: ("Mallet", 0), is_new: false, body, tuning, figure: None }
+        Self { part: ("Mallet", 0), seen: Vec2::ZERO, body, tuning, figure: None }
     }
 }
 
@@ -106,7 +106,14 @@ impl Pages {
                     voices::show(ui.painter(), rect.with_min_x(left.right() + GAP), voices, controls);
                 }
                 let about = (shown.patch(), shown.guide(), is_preset, &figure);
-                sections::show(ui, left, PAGES[page], (part, std::mem::take(&mut self.is_new)), about, controls);
+                sections::show(
+                    ui,
+                    left,
+                    PAGES[page],
+                    (part, std::mem::replace(&mut self.seen, rect.size()) != rect.size()),
+                    about,
+                    controls,
+                );
                 None
             }
         };
@@ -126,7 +133,7 @@ impl Pages {
         let way = rect.with_max_x(rect.right() - HELP);
         if let Some(part) = path::show(ui, way, self.part.0, about, controls) {
             self.leave(controls);
-            (self.part, self.is_new) = (part, true);
+            (self.part, self.seen) = (part, Vec2::ZERO);
         }
         let help = Rect::from_min_size(pos2(way.right(), rect.top()), vec2(HELP, HELP));
         help_tab(ui, help, self.topic(), controls).then_some(Request::Manual)

@@ -35,12 +35,14 @@ pub(super) struct Outline {
     pub(super) marks: Vec<Vec2>,
     /// Whether 0 is in the middle of the picture, and not at its foot.
     pub(super) is_around: bool,
+    /// Whether the lines are those around areas.
+    pub(super) is_filled: bool,
     /// What runs to the right and up.
     pub(super) caption: String,
 }
 
 fn above(line: Vec<Vec2>, caption: impl Into<String>) -> Outline {
-    Outline { lines: vec![line], marks: Vec::new(), is_around: false, caption: caption.into() }
+    Outline { lines: vec![line], marks: Vec::new(), is_around: false, is_filled: false, caption: caption.into() }
 }
 
 fn around(line: Vec<Vec2>, caption: impl Into<String>) -> Outline {
@@ -237,8 +239,9 @@ fn output(gain: f64, pan: f32) -> Outline {
         let level = (Param::Gain.info().normalise(db as f32) as f32).clamp(0.0, 1.0);
         [vec2(left, 0.0), vec2(left, level), vec2(left + 0.2, level), vec2(left + 0.2, 0.0)]
     };
-    let line = [bar(0.2, sides[0]), bar(0.6, sides[1])].concat();
-    above(line, format!("left {:.1}, right {:.1} dB", sides[0], sides[1]))
+    let lines = [bar(0.2, sides[0]), bar(0.6, sides[1])].map(Vec::from).into();
+    let caption = format!("left {:.1}, right {:.1} dB", sides[0], sides[1]);
+    Outline { lines, is_filled: true, ..above(Vec::new(), caption) }
 }
 
 /// The force of a mallet: `u² (1 − u)²` over its contact, scaled to a peak of 1. The width is proportional to the

@@ -26,8 +26,9 @@ pub(super) const PAGES: [&[&str]; 4] = [
 /// Width of a picture at the left of the knobs, with the gap after it; and the least of one in their last row.
 const PICTURE: f32 = 132.0;
 const SMALLEST: f32 = 50.0;
-/// Least width of a cell, in which each name and each choice is whole.
-const LEAST: f32 = 69.0;
+/// Least width of a cell, in which each name and each choice is whole, and the space at its left and right.
+const LEAST: f32 = 73.0;
+const BESIDE: f32 = 3.0;
 /// Said of the knobs of a kit.
 pub(in crate::editor) const ADDED: &str = "added to what each pad has";
 /// Said below a picture of nothing.
@@ -201,7 +202,7 @@ pub(in crate::editor) fn knobs(
 ) {
     for (place, info) in section.iter().enumerate() {
         let offset = vec2((place % columns) as f32 * first.width(), (place / columns) as f32 * first.height());
-        let cell = Rect::from_min_size(first.min + offset, first.size() - vec2(0.0, 4.0)).shrink2(vec2(1.0, 0.0));
+        let cell = Rect::from_min_size(first.min + offset, first.size() - vec2(0.0, 4.0)).shrink2(vec2(BESIDE, 0.0));
         let ring = Ring::of(info, &patch.routes, controls);
         let name = short_name(info, guide);
         let opacity = ui.opacity();
@@ -246,9 +247,11 @@ mod tests {
             let width = |text: &str| text::least_width(ui.painter(), text, SMALL);
             for info in PAGES.into_iter().flat_map(sections).flatten() {
                 let name = short_name(info, &Guide::default());
-                let wide =
-                    info.choices.iter().filter(|choice| width(choice) > LEAST - 2.0 - choice::BESIDE - choice::AROUND);
-                cut.extend((width(&name) > LEAST - 2.0).then(|| name.clone()));
+                let wide = info
+                    .choices
+                    .iter()
+                    .filter(|choice| width(choice) > LEAST - 2.0 * BESIDE - choice::BESIDE - choice::AROUND);
+                cut.extend((width(&name) > LEAST - 2.0 * BESIDE).then(|| name.clone()));
                 cut.extend(wide.map(|choice| format!("{name}: {choice}")));
             }
         });

@@ -9,7 +9,7 @@ use crate::editor::controls::gestures::load;
 use crate::editor::controls::{Controls, Said, moved_in};
 use crate::loaded::positions_of;
 use crate::state::State;
-use egui::{Id, Popup, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo};
+use egui::{Button, Id, Popup, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo};
 use sprung::engine::SoundingNote;
 use sprung::params::{PARAMS, Param, ParamInfo};
 use sprung::patch::Patch;
@@ -104,7 +104,8 @@ fn button(
         let base = route.unwrap_or(Route::linear(Source::Velocity, Param::MalletHardness));
         let mut wanted = None;
         ui.menu_button("Source", |ui| {
-            wanted = wanted.or(sources(ui, guide).map(|source| Some(Route { source, ..base })));
+            let is_here = |source| route.is_some_and(|route| route.source == source);
+            wanted = wanted.or(sources(ui, guide, is_here).map(|source| Some(Route { source, ..base })));
         });
         ui.menu_button("Destination", |ui| {
             wanted = wanted.or(destinations(ui).map(|destination| Some(Route { destination, ..base })));
@@ -114,7 +115,8 @@ fn button(
                 if ui.button("nothing").clicked() {
                     wanted = Some(Some(Route { scale: None, ..base }));
                 }
-                wanted = wanted.or(sources(ui, guide).map(|scale| Some(Route { scale: Some(scale), ..base })));
+                let is_here = |source| base.scale == Some(source);
+                wanted = wanted.or(sources(ui, guide, is_here).map(|scale| Some(Route { scale: Some(scale), ..base })));
             });
             ui.menu_button("Response", |ui| {
                 for response in Response::ALL {
@@ -149,7 +151,10 @@ pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
             ui.label(ALL_TAKEN);
             return;
         }
-        if let Some(source) = sources(ui, &preset.guide) {
+        let routes = &preset.patch.routes;
+        let is_here =
+            |source| routes.iter().any(|(_, route)| (route.source, route.destination) == (source, info.param));
+        if let Some(source) = sources(ui, &preset.guide, is_here) {
             controls.interaction.said = Some(add(source, info, AMOUNT, controls));
             ui.close();
         }
@@ -163,7 +168,7 @@ fn add(source: Source, info: &'static ParamInfo, amount: f32, controls: &mut Con
     let name = source_name(source, &preset.guide);
     if let Some((place, _)) = routes.iter().find(|(_, route)| route.source == source && route.destination == info.param)
     {
-        return Err(format!("{name} modulates {} already: route {}", info.name, place + 1));
+        return Ok(format!("{name} modulates {} already: route {}", info.name, place + 1));
     }
     let Some(place) = (0..MAX_ROUTES).find(|place| routes.get(*place).is_none()) else {
         return Err(ALL_TAKEN.to_owned());
@@ -172,11 +177,12 @@ fn add(source: Source, info: &'static ParamInfo, amount: f32, controls: &mut Con
     Ok(format!("{name} modulates {}: route {}", info.name, place + 1))
 }
 
-fn sources(ui: &mut Ui, guide: &Guide) -> Option<Source> {
+/// A list of all sources, in which some are marked. Returns the one that is clicked.
+fn sources(ui: &mut Ui, guide: &Guide, is_marked: impl Fn(Source) -> bool) -> Option<Source> {
     let mut chosen = None;
     ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
         for source in Source::ALL {
-            if ui.button(source_name(*source, guide)).clicked() {
+            if ui.add(Button::selectable(is_marked(*source), source_name(*source, guide))).clicked() {
                 chosen = Some(*source);
             }
         }

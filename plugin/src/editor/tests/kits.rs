@@ -98,6 +98,12 @@ fn all_pads_of_a_kit_are_shown_at_once_and_the_chosen_one_stays_chosen() {
         assert!(stage.kit().pads.iter().all(|(key, _)| (24..88).contains(key)), "so all are seen");
         stage.tab("4 × 4");
         stage.harness.get_by_label("Pad F#2 Closed hat");
+        stage.tab("Keys");
+        stage.harness.get_by_label("Pad C2 Kick").click();
+        stage.harness.run_steps(3);
+        stage.tab("4 × 4");
+        let chosen = stage.harness.get_by_label("Pad C2 Kick").accesskit_node().toggled();
+        assert_eq!(chosen, Some(egui::accesskit::Toggled::True), "a key chooses its pad");
     }
     finish();
 }

@@ -81,6 +81,17 @@ fn a_part_that_is_off_is_shown_only_while_selected_and_comes_back_as_it_was() {
 }
 
 #[test]
+fn the_selected_part_is_seen_at_every_size() {
+    let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    stage.tab("Output");
+    let [width, height] = LEAST_SIZE.map(|side| side as f32);
+    stage.harness.set_size(vec2(width, height));
+    stage.harness.run_steps(30);
+    let pan = stage.harness.get_by_role_and_label(Role::Slider, "Pan").rect();
+    assert!(pan.left() > 0.0 && pan.right() < width, "{pan}");
+}
+
+#[test]
 fn a_kit_has_no_lamps_and_all_knobs() {
     let mut band = Band::new("Acoustic Kit", SIZE, Theme::Dark);
     band.open("Pluck");
