@@ -21,6 +21,8 @@ const FLAT: [[f32; 2]; 4] = [[1.25, 0.85], [-0.25, 1.1], [-0.25, 0.5], [-0.75, 0
 /// How many flat pieces a drum's shell has, and where its wires lie in front of and behind the middle of its head.
 const SHELL: usize = 16;
 const WIRES: [f32; 3] = [-0.45, 0.0, 0.45];
+/// Shortest line of an outline in pixels: one between two equal points has no direction.
+const SHORTEST: f32 = 0.05;
 
 /// A body as it is painted, in the order of its parts.
 #[derive(Debug, Default)]
@@ -29,6 +31,8 @@ pub struct Picture {
     pub vertices: Vec<(Pos2, Color32)>,
     /// Triangles between these, the farthest first.
     pub triangles: Vec<[u32; 3]>,
+    /// Lines that are painted below the triangles, so that their outline is smooth where triangles are painted without smoothing.
+    pub outline: Vec<([Pos2; 2], Color32)>,
     /// The edges of a surface.
     pub edges: Vec<Vec<Pos2>>,
     /// A string, from end to end; empty for all other bodies.
@@ -81,7 +85,8 @@ impl Picture {
         let down = vec2(0.0, floor - points().fold(f32::NEG_INFINITY, |lowest, at| lowest.max(at.y)));
         let vertices = self.vertices.iter_mut().map(|(at, _)| at);
         let edges = self.edges.iter_mut().flatten().chain(&mut self.string).chain(&mut self.strike);
-        vertices.chain(edges).for_each(|at| *at += down);
+        let outline = self.outline.iter_mut().flat_map(|(ends, _)| ends);
+        vertices.chain(edges).chain(outline).for_each(|at| *at += down);
         self
     }
 
@@ -125,6 +130,40 @@ impl Picture {
             self.triangles.push([first, first + 1, first + across + 1]);
             self.triangles.push([first, first + across + 1, first + across]);
         }
+        let sides = (0..points.len() as u32 - 1).flat_map(|point| [point * across, (point + 1) * across - 1]);
+        self.outline_along(sides.map(|from| [from, from + across]));
+    }
+
+    /// Adds lines between vertices to the outline.
+    fn outline_along(&mut self, lines: impl Iterator<Item = [u32; 2]>) {
+        let vertices = &self.vertices;
+        let lines = lines.map(|ends| ends.map(|end| vertices[end as usize]));
+        let lines = lines.filter(|[from, to]| (to.0 - from.0).length() > SHORTEST);
+        self.outline.extend(lines.map(|[from, to]| ([from.0, to.0], from.1)));
+    }
+
+    /// Adds the lines of a grid of vertices to the outline that have a patch seen from the front on one side only.
+    fn outline_grid(&mut self, first: u32, [columns, rows]: [usize; 2]) {
+        let vertex = |column: usize, row: usize| first + (row * columns + column) as u32;
+        let is_front = |column: usize, row: usize| {
+            let at = |column: usize, row: usize| self.vertices[vertex(column, row) as usize].0;
+            let [one, other] = [at(column + 1, row + 1) - at(column, row), at(column, row + 1) - at(column + 1, row)];
+            one.x * other.y > one.y * other.x
+        };
+        // Beyond the ends of the grid there is none.
+        let patch = |column: usize, row: usize| (column + 1 < columns && row + 1 < rows).then(|| is_front(column, row));
+        let mut lines = Vec::new();
+        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+            let (here, above) = (patch(column, row), row.checked_sub(1).and_then(|row| patch(column, row)));
+            let left = column.checked_sub(1).and_then(|column| patch(column, row));
+            if column + 1 < columns && here != above {
+                lines.push([vertex(column, row), vertex(column + 1, row)]);
+            }
+            if row + 1 < rows && here != left {
+                lines.push([vertex(column, row), vertex(column, row + 1)]);
+            }
+        }
+        self.outline_along(lines.into_iter());
     }
 
     fn surface(
@@ -167,6 +206,7 @@ impl Picture {
             self.triangles.push([corners[0], corners[1], corners[2]]);
             self.triangles.push([corners[0], corners[2], corners[3]]);
         }
+        self.outline_grid(before, figure.grid);
         let at = |column: usize, row: usize| {
             let number = row * columns + column;
             form.on(rect, figure.points[number], displaced(number))
@@ -219,4 +259,26 @@ fn light(along: [f32; 3], across: [f32; 3]) -> [f32; 2] {
     // Its sixteenth power.
     let highlight = (0..4).fold(glance, |power, _| power * power);
     [AMBIENT + (1.0 - AMBIENT) * 1.25 * dot(normal, LIGHT).max(0.0), GLOSS * highlight]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::preset::Preset;
+
+    #[test]
+    fn an_outline_reaches_as_far_as_its_body() {
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(400.0, 300.0));
+        for name in ["Marimba", "Gong", "Church Bell", "Metal Plate", "Singing Bowl"] {
+            let Preset { patch, guide, tags, .. } = Preset::find(name).unwrap();
+            let figure = crate::small_figure(&patch.modes, guide.family, tags);
+            let moved: Vec<f32> = (0..figure.points.len()).map(|number| (number % 7) as f32).collect();
+            for displacements in [&[], &moved[..]] {
+                let picture = Picture::of(rect, &figure, displacements, None, Color32::WHITE);
+                let places: Vec<Pos2> = picture.vertices.iter().map(|(at, _)| *at).collect();
+                let ends: Vec<Pos2> = picture.outline.iter().flat_map(|(ends, _)| *ends).collect();
+                assert_eq!(Rect::from_points(&ends), Rect::from_points(&places), "{name}");
+            }
+        }
+    }
 }

@@ -49,6 +49,9 @@ fn paint_picture(painter: &Painter, picture: Picture, palette: &Palette) {
         }
         painter.add(Shape::line(picture.string, Stroke::new(2.5, palette.accent)));
     }
+    for (ends, colour) in picture.outline {
+        painter.line_segment(ends, Stroke::new(1.0, colour));
+    }
     let vertices = picture.vertices.into_iter().map(|(pos, color)| Vertex { pos, uv: WHITE_UV, color }).collect();
     painter.add(Mesh { vertices, indices: picture.triangles.concat(), ..Mesh::default() });
     let edge = Stroke::new(1.2, palette.text.gamma_multiply(0.5));
