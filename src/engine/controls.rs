@@ -48,11 +48,13 @@ pub(crate) struct Controls {
     /// Speed of the bow, at least 0, and the pressure of the bow, 0–1.
     pub(crate) bow_speed: f32,
     pub(crate) bow_force: f32,
-    /// Pressure of the breath, 1 closes a reed; opening of the valve or the jet, 0–1; semitones of its tension; turbulence, 0–1.
+    /// Pressure of the breath, 1 closes a reed; opening of the valve or the jet, 0–1; semitones of its tension; turbulence, 0–1;
+    /// steepening in decibels per octave for each halving of the pressure.
     pub(crate) breath_pressure: f32,
     pub(crate) breath_opening: f64,
     pub(crate) breath_lip: f64,
     pub(crate) breath_noise: f32,
+    pub(crate) breath_steepening: f64,
     /// Amplitude ratio of the noise that is held.
     pub(crate) noise_gain: f32,
     /// Amplitude ratio of the incoming sound.
@@ -101,6 +103,7 @@ impl Controls {
             breath_opening: f64::from(value(Param::BreathOpening)) * 0.01,
             breath_lip: value(Param::BreathLip).into(),
             breath_noise: value(Param::BreathNoise) * 0.01,
+            breath_steepening: value(Param::BreathSteepening).into(),
             noise_gain: exciter_gain(value(Param::NoiseHeld).into()) as f32,
             input_gain: exciter_gain(value(Param::InputLevel).into()) as f32,
             gain_left,
@@ -141,6 +144,7 @@ impl Controls {
             Param::BreathOpening => self.breath_opening = wide * 0.01,
             Param::BreathLip => self.breath_lip = wide,
             Param::BreathNoise => self.breath_noise = value * 0.01,
+            Param::BreathSteepening => self.breath_steepening = wide,
             Param::NoiseHeld => self.noise_gain = exciter_gain(wide) as f32,
             Param::InputLevel => self.input_gain = exciter_gain(wide) as f32,
             Param::Gain => self.gain_db = value,

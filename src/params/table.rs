@@ -107,6 +107,8 @@ table! {
             "Tension of reed or lips, or how near the lips are to the edge: a little bends the pitch, much makes the note crack.";
         BreathNoise "breath_noise" "Breath noise", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20),
             "Turbulence of the breath: wind that the tube colours.";
+        BreathSteepening "breath_steepening" "Breath steepening", DecibelsPerOctave 0.0..12.0 = 0.0, Linear, Smoothed(20),
+            "How much softer higher modes are heard for each halving of the pressure below 200 %: loud brass is bright.";
         BreathAttack "breath_attack" "Breath attack", Seconds 0.0..2.0 = 0.03, Linear, NextNote,
             "Time until the breath has its pressure.";
         BreathTongue "breath_tongue" "Breath tongue", Percent 0.0..100.0 = 25.0, Linear, NextNote,

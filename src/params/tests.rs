@@ -11,7 +11,7 @@ fn ids_are_pinned() {
         pluck_level pluck_hardness pluck_position pluck_width pluck_velocity \
         noise_level noise_reach noise_time noise_decay noise_attack noise_colour noise_hits noise_spacing noise_held noise_velocity \
         bow_level bow_force bow_position bow_slip bow_velocity \
-        breath_level breath_pressure breath_valve breath_opening breath_lip breath_noise breath_attack breath_tongue \
+        breath_level breath_pressure breath_valve breath_opening breath_lip breath_noise breath_steepening breath_attack breath_tongue \
         rattle rattle_gap rattle_mass rattle_rate rattle_hardness rattle_position \
         input_level \
         velocity vary_position vary_hardness vary_modes \

@@ -138,6 +138,20 @@ fn more_breath_is_louder_and_brighter() {
 }
 
 #[test]
+fn a_bore_in_which_waves_steepen_is_the_darker_the_softer_it_is_blown() {
+    let lips = horn().with(Param::BreathValve, 1.0).with(Param::BreathTongue, 0.0);
+    let steady = |steepening: f32, pressure: f32| {
+        let patch = lips.clone().with(Param::BreathSteepening, steepening).with(Param::BreathPressure, pressure);
+        render(&patch, RATE, &[on(0, 60)], 48_000)[24_000..].to_vec()
+    };
+    let colours = |steepening: f32| [80.0, 120.0, 180.0].map(|pressure| brightness(&steady(steepening, pressure)));
+    let ([plain_soft, _, plain_loud], [soft, middle, loud]) = (colours(0.0), colours(4.0));
+    assert!(soft < middle && middle < loud && loud < plain_loud, "{soft} {middle} {loud} {plain_loud}");
+    assert!(loud / soft > 1.5 * plain_loud / plain_soft, "{soft} to {loud}, {plain_soft} to {plain_loud}");
+    assert_eq!(steady(4.0, 200.0), steady(0.0, 200.0), "the levels are those of the loudest breath");
+}
+
+#[test]
 fn a_blown_note_lasts_while_it_is_held_and_then_ends() {
     for (valve, pressure) in [(0.0, 70.0), (1.0, 120.0), (2.0, 70.0)] {
         let mut synth = Synth::new(RATE, 1);

@@ -335,6 +335,7 @@ fn busy(form: usize) -> Patch {
         (BowLevel, if form == 3 { -12.0 } else { -60.0 }),
         (BreathLevel, if form == 4 { -12.0 } else { -60.0 }),
         (BreathNoise, 5.0),
+        (BreathSteepening, if form == 4 { 3.0 } else { 0.0 }),
         (Rattle, [0.0, 2.0, 1.0, 0.0, 0.0][form]),
         (RattleGap, 0.5),
         (Velocity, 50.0),

@@ -9,7 +9,7 @@ use crate::engine::controls::Controls;
 use crate::engine::gain::exciter_gain;
 use crate::params::{Param, Valve as Kind};
 use crate::sound::blown::{amplitude, contact, flow, law, share};
-use libm::{exp, fabs, sqrt};
+use libm::{exp, fabs, log2, rint, sqrt};
 
 /// The breath comes within 5 % of its pressure in the attack time, and leaves in this many seconds.
 const ATTACKS: f64 = 3.0;
@@ -18,6 +18,12 @@ const LEAVES: f64 = 0.03;
 /// Extra pressure when the tongue lets go fully, as a share of the pressure, and the seconds in which it goes.
 const TONGUE: f64 = 1.0;
 const TONGUE_SECONDS: f64 = 0.06;
+
+/// The pressure at which a tube's modes are heard as loudly as they are, and the halvings of it after which they get no softer.
+const STEEP: f64 = 2.0;
+const HALVINGS: f64 = 3.0;
+/// Steps in one decibel per octave: a pressure that comes near its own gives the modes no new gains at every tick.
+const SLOPES: f64 = 64.0;
 
 /// Pressure below which the breath is over.
 const NO_BREATH: f64 = 1e-4;
@@ -87,6 +93,19 @@ impl Blowing {
     /// Whether breath drives a held note, or would as soon as it has a pressure.
     pub(super) fn may_blow(&self) -> bool {
         self.amplitude > 0.0
+    }
+
+    /// How much softer higher modes are heard, in decibels per octave, at most 0.
+    ///
+    /// A loud wave becomes steeper on its way through a long narrow bore, which brings energy from low partials to high ones: that
+    /// makes brass brassy, and lips do not (Hirschberg, Gilbert, Msallam and Wijnands, 1996). Here the modes' own levels are those of
+    /// the loudest breath, and a softer one leaves that out: a slope over the modes, no partial that the tube does not have.
+    pub(super) fn slope(&self, controls: &Controls) -> f64 {
+        if controls.breath_steepening == 0.0 || !self.may_blow() {
+            return 0.0;
+        }
+        let halvings = log2(STEEP / self.reached).clamp(0.0, HALVINGS);
+        rint(-SLOPES * controls.breath_steepening * halvings) / SLOPES
     }
 
     /// Starts a ramp of the pressure that ends in `frames` frames, and sets the mouthpiece. Without `values`, a breath whose modes have

@@ -176,7 +176,7 @@ impl SynthVoice {
         // What plays or touches feels the pitches of the modes.
         let is_felt = self.strike.is_touched() || self.strike.rattling.is_on();
         let frequency = (!is_felt).then(|| self.pitch.frequency());
-        self.colour.control(self.controls.colour, &self.drift, frequency, modes, &mut self.bank);
+        self.colour.control(self.slope(), &self.drift, frequency, modes, &mut self.bank);
         self.energy.measure_always(self.may_move || self.controls.tension > 0.0 || self.blooms());
         let energy = || self.energy.now() / self.strike.full_energy();
         let tension = self.tension.control(&self.controls, energy, self.fresh, self.sample_rate, frames);
@@ -188,7 +188,7 @@ impl SynthVoice {
                 start = Some([self.controls.gain_left, self.controls.gain_right]);
                 self.move_controls(base, wheels, frames);
                 self.drift.control(&self.controls, is_played, [0.0, self.clock.seconds(frames as u64)]);
-                self.colour.control(self.controls.colour, &self.drift, frequency, modes, &mut self.bank);
+                self.colour.control(self.slope(), &self.drift, frequency, modes, &mut self.bank);
             }
         }
         match instrument {
@@ -200,6 +200,11 @@ impl SynthVoice {
         self.aim_gain(start, wheels, frames);
         self.control_driven(instrument, frames);
         self.fresh = false;
+    }
+
+    /// How much softer higher modes are heard, in decibels per octave.
+    fn slope(&self) -> f64 {
+        self.controls.colour + self.strike.blowing.slope(&self.controls)
     }
 
     /// Lets a hammer fly that waits for the pitch of the modes.

@@ -110,7 +110,7 @@ pub(crate) const PARAM_IDS: &str = "mallet_pulse mallet_hardness mallet_hardness
     vary_hardness vary_modes bow_level bow_force bow_position bow_slip bow_velocity input_level \
     tension bloom bloom_time touch touch_position noise_held breath_level breath_pressure breath_valve breath_opening \
     breath_lip breath_noise breath_attack breath_tongue rattle rattle_gap rattle_mass rattle_rate rattle_hardness \
-    rattle_position colour drift_level drift_pitch drift_rate";
+    rattle_position colour drift_level drift_pitch drift_rate breath_steepening";
 
 /// Destinations of routes: the parameters that move pitch and damping and those of the modulation itself, but none on
 /// which the bound depends. New ones must be added at the end.
