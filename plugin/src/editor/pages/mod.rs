@@ -106,14 +106,8 @@ impl Pages {
                     voices::show(ui.painter(), rect.with_min_x(left.right() + GAP), voices, controls);
                 }
                 let about = (shown.patch(), shown.guide(), is_preset, &figure);
-                sections::show(
-                    ui,
-                    left,
-                    PAGES[page],
-                    (part, std::mem::replace(&mut self.seen, rect.size()) != rect.size()),
-                    about,
-                    controls,
-                );
+                let is_new = std::mem::replace(&mut self.seen, rect.size()) != rect.size();
+                sections::show(ui, left, PAGES[page], (part, is_new), about, controls);
                 None
             }
         };
