@@ -98,7 +98,7 @@ table! {
         BreathLevel "breath_level" "Breath level", Decibels -60.0..24.0 = -60.0, Linear, NextNote,
             "Loudness of a tube that is blown while the key is held, its lowest 64 modes; at -60 dB there is no breath.";
         BreathPressure "breath_pressure" "Breath pressure", Percent 0.0..200.0 = 60.0, Linear, Smoothed(20),
-            "Pressure in the mouth: at 100 % it closes a reed; too little does not speak, and more is louder and brighter.";
+            "Pressure in the mouth: 100 % would close a reed, which gives way before; too little does not speak, more is louder and brighter.";
         BreathValve "breath_valve" "Breath valve", Choice[Valve] 0.0..2.0 = 0.0, Linear, NextNote,
             "What the breath goes through: a reed, which it closes, lips, which it opens, or a flute's jet across an edge.";
         BreathOpening "breath_opening" "Breath opening", Percent 0.0..100.0 = 50.0, Linear, Smoothed(20),

@@ -151,6 +151,24 @@ fn a_bore_in_which_waves_steepen_is_the_darker_the_softer_it_is_blown() {
     assert_eq!(steady(4.0, 200.0), steady(0.0, 200.0), "the levels are those of the loudest breath");
 }
 
+/// With all that players have for it.
+#[test]
+fn the_hardest_breath_is_the_loudest() {
+    for preset in blown() {
+        let patch = steady(&preset.patch);
+        let level = |breath: f32| {
+            let events = [
+                event(0, EventKind::Control { controller: 2, value: breath }),
+                event(0, EventKind::ChannelPressure(breath)),
+                Event::note_on(0, preset.guide.home, 1.0),
+            ];
+            rms(&render(&patch, RATE, &events, 38_400)[19_200..])
+        };
+        let levels = [0.0, 0.5, 1.0].map(level);
+        assert!(levels.is_sorted() && levels[2] > 1.2 * levels[0], "{}: {levels:?}", preset.name);
+    }
+}
+
 #[test]
 fn a_blown_note_lasts_while_it_is_held_and_then_ends() {
     for (valve, pressure) in [(0.0, 70.0), (1.0, 120.0), (2.0, 70.0)] {

@@ -25,6 +25,9 @@ const HALVINGS: f64 = 3.0;
 /// Steps in one decibel per octave: a pressure that comes near its own gives the modes no new gains at every tick.
 const SLOPES: f64 = 64.0;
 
+/// A reed that is blown harder than this is let more open, so that it comes near the pressure of the second, but never shuts.
+const GIVES_WAY: [f64; 2] = [0.8, 0.95];
+
 /// Pressure below which the breath is over.
 const NO_BREATH: f64 = 1e-4;
 
@@ -134,7 +137,7 @@ impl Blowing {
             self.place(values, frequency, sample_rate, bank);
         }
         let left = age / TONGUE_SECONDS;
-        let tongued = wanted * (1.0 + self.tongue * exp(-left * left));
+        let tongued = self.spoken(wanted * (1.0 + self.tongue * exp(-left * left)));
         let seconds = if wanted > 0.0 { self.attack } else { LEAVES };
         let near = if seconds > 0.0 { exp(-ATTACKS * frames as f64 / (seconds * sample_rate)) } else { 0.0 };
         self.reached = tongued + (self.reached - tongued) * near;
@@ -146,6 +149,15 @@ impl Blowing {
         self.mouthpiece.breath.opening = flow(controls.breath_opening) as f32;
         self.mouthpiece.breath.per_frame = (frequency / sample_rate) as f32;
         self.mouthpiece.breath.noise = controls.breath_noise;
+    }
+
+    /// What of a pressure the valve gets. No player blows a reed shut, which would end the note at its loudest.
+    fn spoken(&self, pressure: f64) -> f64 {
+        let [from, most] = GIVES_WAY;
+        if self.kind != Kind::Reed || pressure <= from {
+            return pressure;
+        }
+        most - (most - from) * exp((from - pressure) / (most - from))
     }
 
     /// Sets what the modes take and give.
