@@ -161,6 +161,10 @@ impl Blowing {
     }
 
     /// Sets what the modes take and give.
+    ///
+    /// Both are in proportion to how loudly a mode is heard. So where routes tilt the levels by many decibels from one strike to the
+    /// next, a note that is struck again while it sounds is taken by the mouthpiece for another swing than it has, which can make
+    /// it louder than its strikes: without end, if it goes to and fro.
     fn place(&mut self, values: &StruckValues, frequency: f64, sample_rate: f64, bank: &mut Cells) {
         self.is_placed = true;
         let [levels, ..] = values.tilted_levels();
