@@ -28,6 +28,9 @@ const SLOPES: f64 = 64.0;
 /// A reed that is blown harder than this is let more open, so that it comes near the pressure of the second, but never shuts.
 const GIVES_WAY: [f64; 2] = [0.8, 0.95];
 
+/// The mouthpiece feels no mode that swings by more than this for a share of 1: some hundred times what the hardest breath gives.
+const MOST_FELT: f64 = 100.0;
+
 /// Pressure below which the breath is over.
 const NO_BREATH: f64 = 1e-4;
 
@@ -162,19 +165,25 @@ impl Blowing {
 
     /// Sets what the modes take and give.
     ///
-    /// Both are in proportion to how loudly a mode is heard. So where routes tilt the levels by many decibels from one strike to the
-    /// next, a note that is struck again while it sounds is taken by the mouthpiece for another swing than it has, which can make
-    /// it louder than its strikes: without end, if it goes to and fro.
+    /// Both are in proportion to how loudly a mode is heard. So where routes tilt the levels from one strike to the next, a note that is
+    /// struck again while it sounds is felt as another swing than it has. What breath could not have blown is then not felt at all, but
+    /// rings on by itself: the mouthpiece would pass it on to modes that are heard louder, and to and fro without end.
     fn place(&mut self, values: &StruckValues, frequency: f64, sample_rate: f64, bank: &mut Cells) {
         self.is_placed = true;
         let [levels, ..] = values.tilted_levels();
         let loudest = levels.iter().fold(0.0, |most, level| f64::max(most, fabs(*level)));
-        let (mut ratios, mut shares) = ([0.0; MAX_MODES], [0.0; MAX_MODES]);
-        for (m, (mode, (ratio, ..))) in values.modes().as_slice().iter().zip(bank.modes()).take(MAX_MODES).enumerate() {
-            (ratios[m], shares[m]) = (ratio, share(mode, frequency * ratio, sample_rate));
+        let (mut contacts, mut shares) = ([[0.0; 2]; MAX_MODES], 0.0);
+        for (m, (mode, (ratio, _, _, energy))) in
+            values.modes().as_slice().iter().zip(bank.modes()).take(MAX_MODES).enumerate()
+        {
+            let share = share(mode, frequency * ratio, sample_rate);
+            let [take, give] = contact(share, [levels[m], loudest], ratio, self.amplitude);
+            if energy * fabs(give.into()) <= MOST_FELT * MOST_FELT * fabs(take.into()) {
+                (contacts[m], shares) = ([take, give], shares + share);
+            }
         }
-        self.mouthpiece.breath.shares = shares.iter().sum::<f64>() as f32;
-        bank.set_contacts(|m| contact(shares[m], [levels[m], loudest], ratios[m], self.amplitude));
+        self.mouthpiece.breath.shares = shares as f32;
+        bank.set_contacts(|m| contacts[m]);
     }
 
     /// The breath of the next frames, if there is any.
