@@ -13,8 +13,8 @@
 //! | `render` | the offline renderer (feature `render`) |
 //! | `batch` | thousands of sounds from a file of jobs, with exact labels (feature `batch`) |
 //! | `analysis` | what sound is measured with: the modes of a recorded strike, differences, spectra (feature `fit`), and figures of them (feature `analysis`) |
-//! | `lab` | methods that integrate a mass on a spring, compared with the exact motion and with the oscillator (feature
-//! `lab`) |
+//! | `lab` | methods that integrate a mass on a spring, compared with the exact motion and with the oscillator (feature `lab`) |
+//! | `sampler` | sampler instruments of presets and kits (feature `batch`) |
 //! | `realtime` | sound devices and MIDI ports (feature `live`) |
 //!
 //! # Notes and songs

@@ -134,7 +134,7 @@ table! {
     }
     "Strike" {
         Velocity "velocity" "Velocity to force", Percent 0.0..100.0 = 100.0, Linear, NextNote,
-            "How much velocity sets the force of all exciters: 100 % is the square of velocity, 0 % is full force always.";
+            "How much velocity sets the force of mallet, pluck, noise and bow: 100 % is the square of velocity, 0 % is full force always.";
         VaryPosition "vary_position" "Vary position", Percent 0.0..10.0 = 0.0, Linear, NextNote,
             "How far from its place each strike and pluck falls at most, by chance, as a share of the length.";
         VaryHardness "vary_hardness" "Vary hardness", Percent 0.0..50.0 = 0.0, Linear, NextNote,

@@ -17,8 +17,8 @@
 //!
 //! A plate has all modes of a steel sheet: 12,965 masses up to 10 kHz. Each is `z ← λ (z + u)` at every frame, with the input `u`
 //! and `λ = e^(iθ−σ)`, as in [`super::mode_bank`], and what is heard of it is its gain times the imaginary part of `z`. The
-//! unit of each mass is its response to a sample of 1. A bank that steps all masses at every frame takes 1,460 ns a frame with
-//! AVX2. A [`Resonator`] has the same output in a fourteenth of the time, because it takes the response apart by age:
+//! unit of each mass is its response to a sample of 1. A bank that steps all masses at every frame takes 1,908 ns a frame with
+//! AVX2. A [`Resonator`] has the same output in a thirteenth of the time (`benches/README.md`), because it takes the response apart by age:
 //!
 //! - **The head**, what input does within one to two blocks of 11 ms, is a convolution (`resonator/head`). It has no latency.
 //! - **The tail**, what older input does, is in the masses. They turn once a block, by `λ^B`. The sums that this needs, of a
