@@ -5,6 +5,7 @@
 //! by banks 126 and 127. Other banks hold variations of the same programs; here they play the plain program.
 
 use super::event::EventKind;
+use super::midi::seven_bits;
 use super::note::nearest_channel;
 
 /// Number of melodic programs. Drum kit `n` is program `MELODIC + n` in a list that holds both.
@@ -33,7 +34,7 @@ impl Banks {
         let channel = nearest_channel(channel);
         let bank = &mut self.0[usize::from(channel)];
         match kind {
-            EventKind::Control { controller: BANK_SELECT, value } => *bank = (value * 127.0 + 0.5) as u8,
+            EventKind::Control { controller: BANK_SELECT, value } => *bank = seven_bits(value),
             EventKind::Program(number) if number < MELODIC && Self::has_drums(channel, *bank) => {
                 return EventKind::Program(MELODIC + number);
             }

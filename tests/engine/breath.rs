@@ -186,6 +186,31 @@ fn a_blown_note_lasts_while_it_is_held_and_then_ends() {
 }
 
 /// Breath, pressure and the tongue are heard; a slur goes on with the air in the tube.
+/// An event in every frame changes nothing of how fast the pressure comes.
+#[test]
+fn breath_comes_as_fast_under_many_events() {
+    let patch = horn().with(Param::BreathAttack, 1.0).with(Param::BreathPressure, 120.0);
+    let stray = (1..24_000).map(|frame| event(frame, EventKind::Control { controller: 20, value: 0.5 }));
+    let alone = render(&patch, RATE, &[on(0, 60)], 24_000);
+    let among = render(&patch, RATE, &std::iter::once(on(0, 60)).chain(stray).collect::<Vec<_>>(), 24_000);
+    // Not the same, since a note grows from what little first moves the air.
+    for window in [9600..14_400, 14_400..24_000] {
+        let [alone, among] = [&alone, &among].map(|sound| rms(&sound[window.clone()]));
+        assert!((0.6..1.6).contains(&(among / alone)), "{window:?}: {alone} {among}");
+    }
+}
+
+/// What swings under one level is another pressure under another: too much of it is not felt until it has decayed.
+#[test]
+fn a_soft_note_speaks_after_a_loud_one_on_the_same_key() {
+    let patch = horn().with(Param::BreathLevel, -44.0).with_route(0, Source::Velocity, Param::BreathLevel, 60.0);
+    let events = [Event::note_on(0, 60, 1.0), Event::note_on(48_000, 60, 0.02)];
+    let sound = render(&patch, RATE, &events, 192_000);
+    let soft = render(&patch, RATE, &[Event::note_on(0, 60, 0.02)], 96_000);
+    let [after, alone] = [rms(&sound[160_000..]), rms(&soft[64_000..])];
+    assert!((after / alone - 1.0).abs() < 0.2, "{after} {alone}");
+}
+
 #[test]
 fn gestures_are_heard() {
     let patch = horn().with(Param::BreathPressure, 20.0).with_route(0, Source::Breath, Param::BreathPressure, 25.0);

@@ -1,10 +1,11 @@
 //! What touches a body in whole notes: how hammers follow velocity and what they meet, and what rattles.
 
-use crate::events::{off, played};
+use crate::events::{event, off, played};
 use crate::exciters::{brightness, rms};
-use sprung::engine::{Event, Synth};
+use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::Param;
 use sprung::patch::{Mode, ModeTable, Patch};
+use sprung::preset::Preset;
 
 const RATE: f64 = 48_000.0;
 const FELT: f32 = 2.0;
@@ -147,4 +148,33 @@ fn a_rattle_sounds_the_same_in_blocks() {
         parts.extend(left);
     }
     assert!(parts == whole && rms(&whole) > 1e-3);
+}
+
+/// Each strike finds the modes that swing under other levels than those by which they were moved.
+#[test]
+fn a_rattle_does_not_grow_where_strikes_are_dark_and_bright_in_turn() {
+    let sitar = Preset::find("Sitar").unwrap().patch.clone().with(Param::Limiter, 0.0);
+    let most = |tilts: [f32; 2], strikes: u32, velocity: f32| {
+        let strike = |n: u32| {
+            let tilt = event(4800 * n, EventKind::Param { param: Param::Tilt, value: tilts[n as usize % 2] });
+            [tilt, Event::note_on(4800 * n, 48, velocity)]
+        };
+        let events: Vec<Event> = (0..strikes).flat_map(strike).collect();
+        render(&sitar, &events, 4800 * strikes as usize).iter().fold(0.0, |most: f32, sample| most.max(sample.abs()))
+    };
+    let full = most([-12.0, 12.0], 2, 1.0);
+    let turned = most([-12.0, 12.0], 100, 0.2);
+    assert!(full > 0.01 && turned < 4.0 * full, "{full} {turned}");
+}
+
+#[test]
+fn a_hammer_strikes_also_where_a_bow_has_just_stopped() {
+    let bowed = string(60).with(Param::BowLevel, -20.0);
+    let lift = event(24_000, EventKind::Param { param: Param::BowLevel, value: -60.0 });
+    let strike = |velocity| Event::note_on(24_000, 48, velocity);
+    let [soft, hard] = [0.0, 1.0].map(|velocity| {
+        let sound = render(&bowed, &[Event::note_on(0, 48, 0.3), lift, strike(velocity)], 36_000);
+        rms(&sound[24_000..])
+    });
+    assert!(hard > 1.5 * soft, "{soft} {hard}");
 }

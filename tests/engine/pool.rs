@@ -5,6 +5,7 @@ use crate::workers::{Backwards, TwoThreads};
 use sprung::engine::{Ensemble, Event, EventKind, Synth, Workers};
 use sprung::params::Param;
 use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
+use sprung::preset::Preset;
 use sprung::sound::Kit;
 
 const RATE: f64 = 48_000.0;
@@ -149,4 +150,19 @@ fn a_synth_steals_when_its_own_pool_is_exhausted() {
     reported.sort_unstable();
     reported.dedup();
     assert_eq!(reported.len(), 36, "each note that gave way has ended once");
+}
+
+/// A note that is played swings in after it has begun. It is not the quietest for that.
+#[test]
+fn a_chord_that_is_bowed_takes_the_place_of_older_notes_not_of_itself() {
+    let violin = Preset::find("Violin").unwrap().patch.clone().with(Param::Voices, 2.0);
+    let violin = violin.with(Param::MalletLevel, -60.0).with(Param::NoiseLevel, -60.0);
+    let mut ensemble = Ensemble::new(48_000.0, 1, &violin, &[]);
+    let on = |frame, key| Event::note_on(frame, key, 0.8);
+    let events = [on(0, 55), on(0, 62), on(48_000, 67), on(48_000, 71)];
+    let (mut left, mut right) = (vec![0.0; 60_000], vec![0.0; 60_000]);
+    ensemble.process(&events, &mut left, &mut right);
+    let mut keys: Vec<u8> = ensemble.snapshot().notes.iter().flatten().map(|note| note.key).collect();
+    keys.sort_unstable();
+    assert_eq!(keys, [67, 71]);
 }

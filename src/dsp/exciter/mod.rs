@@ -144,6 +144,11 @@ impl Exciter {
         (self.next + OVERLAPPING - 1) % OVERLAPPING
     }
 
+    /// Whether any pulse of the strike that was started last is still to come, and which share of the energy of its noise.
+    pub(crate) fn coming(&self) -> (bool, f64) {
+        self.blows[self.newest()].coming()
+    }
+
     /// Whether any force of the strike in this slot is still to come.
     pub(crate) fn is_acting(&self, slot: usize) -> bool {
         self.blows[slot].frames_left() > 0
@@ -192,6 +197,10 @@ impl Blow {
 
     fn frames_left(&self) -> u32 {
         self.push.frames().max(self.pull.frames()).max(self.noise.frames()).saturating_sub(self.frame)
+    }
+
+    fn coming(&self) -> (bool, f64) {
+        (self.frame < self.push.frames().max(self.pull.frames()), self.noise.left(self.frame))
     }
 
     fn add_to(&mut self, frames: usize, drive: &mut Drive) {

@@ -223,10 +223,11 @@ impl Instruments {
         let value_of_sound = value_of_sound(&self.kit, &self.values);
         for instrument in &mut self.instruments {
             let value = value_of_sound(param, instrument.sound.patch().get(param));
+            let before = instrument.knobs.modulated(param);
             instrument.set(param, value, self.offsets[param as usize], clock);
             // A sounding voice cannot change these without a click, so later notes have new bodies and never share its
             // voice.
-            if matches!(param, Param::Coefficients | Param::Width) {
+            if matches!(param, Param::Coefficients | Param::Width) && instrument.knobs.modulated(param) != before {
                 self.bodies = self.bodies.wrapping_add(1);
                 instrument.body_serial = self.bodies;
             }

@@ -28,7 +28,7 @@ const SLOPES: f64 = 64.0;
 /// A reed that is blown harder than this is let more open, so that it comes near the pressure of the second, but never shuts.
 const GIVES_WAY: [f64; 2] = [0.8, 0.95];
 
-/// The mouthpiece feels no mode that swings by more than this for a share of 1: some hundred times what the hardest breath gives.
+/// The mouthpiece feels no mode that swings by more than this for a share of 1: some fifty times what the hardest breath gives.
 const MOST_FELT: f64 = 100.0;
 
 /// Pressure below which the breath is over.
@@ -46,8 +46,9 @@ pub(super) struct Blowing {
     pressure: Line,
     /// The pressure at the next control tick.
     reached: f64,
-    /// Whether the modes have their contacts.
+    /// Whether the modes have their contacts, and whether some that swing too far are left out until they do not.
     is_placed: bool,
+    leaves_out: bool,
     has_blown: bool,
 }
 
@@ -69,6 +70,7 @@ impl Blowing {
         pressure: Line::ZERO,
         reached: 0.0,
         is_placed: false,
+        leaves_out: false,
         has_blown: false,
     };
 
@@ -131,19 +133,22 @@ impl Blowing {
         }
         self.has_blown = true;
         let Blown { frequency, sample_rate, age } = note();
-        if !self.is_placed {
-            let Some(values) = values else {
+        match values {
+            Some(values) if !self.is_placed || self.leaves_out => self.place(values, frequency, sample_rate, bank),
+            None if !self.is_placed => {
                 // Its sound is gone, and nobody would end its ramp.
                 (self.pressure, self.reached) = (Line::ZERO, 0.0);
                 return;
-            };
-            self.place(values, frequency, sample_rate, bank);
+            }
+            _ => {}
         }
         let left = age / TONGUE_SECONDS;
         let tongued = self.spoken(wanted * (1.0 + self.tongue * exp(-left * left)));
         let seconds = if wanted > 0.0 { self.attack } else { LEAVES };
         let near = if seconds > 0.0 { exp(-ATTACKS * frames as f64 / (seconds * sample_rate)) } else { 0.0 };
-        self.reached = tongued + (self.reached - tongued) * near;
+        // An event between two ticks finds the pressure on its way.
+        let present = if self.pressure.has_arrived() { self.reached } else { self.pressure.now().into() };
+        self.reached = tongued + (present - tongued) * near;
         if wanted == 0.0 && self.reached < NO_BREATH {
             self.reached = 0.0;
         }
@@ -169,7 +174,7 @@ impl Blowing {
     /// struck again while it sounds is felt as another swing than it has. What breath could not have blown is then not felt at all, but
     /// rings on by itself: the mouthpiece would pass it on to modes that are heard louder, and to and fro without end.
     fn place(&mut self, values: &StruckValues, frequency: f64, sample_rate: f64, bank: &mut Cells) {
-        self.is_placed = true;
+        (self.is_placed, self.leaves_out) = (true, false);
         let [levels, ..] = values.tilted_levels();
         let loudest = levels.iter().fold(0.0, |most, level| f64::max(most, fabs(*level)));
         let (mut contacts, mut shares) = ([[0.0; 2]; MAX_MODES], 0.0);
@@ -180,6 +185,8 @@ impl Blowing {
             let [take, give] = contact(share, [levels[m], loudest], ratio, self.amplitude);
             if energy * fabs(give.into()) <= MOST_FELT * MOST_FELT * fabs(take.into()) {
                 (contacts[m], shares) = ([take, give], shares + share);
+            } else {
+                self.leaves_out = true;
             }
         }
         self.mouthpiece.breath.shares = shares as f32;

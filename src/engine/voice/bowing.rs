@@ -4,10 +4,8 @@ use super::line::Line;
 use super::values::StruckValues;
 use crate::dsp::cells::Cells;
 use crate::dsp::exciter::Bow;
-use crate::dsp::mode_bank::MAX_MODES;
 use crate::engine::controls::Controls;
 use crate::params::Param;
-use crate::patch::Mode;
 use libm::{fabs, sin, sqrt};
 use std::f64::consts::{PI, TAU};
 
@@ -49,25 +47,27 @@ impl Bowing {
     }
 
     /// Starts ramps of speed and force that end in `frames` frames. `note` returns the note's frequency and the sample rate in
-    /// Hz; it is called only if the bow is on. Without `values`, a bow that has no weights does not start, or ends.
+    /// Hz; it is called only if the bow is on. Without `values`, a bow that has no weights does not start, or ends. While breath has the modes'
+    /// contacts (`is_blown`), the bow only moves. Returns whether the modes have got its weights.
     pub(super) fn control(
         &mut self,
         controls: &Controls,
-        is_held: bool,
+        [is_held, is_blown]: [bool; 2],
         values: Option<&StruckValues>,
         note: impl FnOnce() -> [f64; 2],
         bank: &mut Cells,
         frames: usize,
-    ) {
+    ) -> bool {
         let wanted = if is_held { f64::from(controls.bow_speed) * self.speed } else { 0.0 };
         if wanted == 0.0 && !self.is_on() {
-            return;
+            return false;
         }
-        if !self.is_placed {
+        let places = !self.is_placed && !is_blown;
+        if places {
             let Some(values) = values else {
                 // Its sound is gone, and nobody would end its ramps.
                 (self.bow_speed, self.bow_force) = (Line::ZERO, Line::ZERO);
-                return;
+                return false;
             };
             self.place(values, bank);
         }
@@ -75,6 +75,7 @@ impl Bowing {
         let force = wanted * (MOST_PRESSURE * pressure * pressure * TAU * frequency / sample_rate).min(1.0);
         self.bow_speed.aim(wanted as f32, frames);
         self.bow_force.aim(force as f32, frames);
+        places
     }
 
     /// Sets the modes' weights at the point of the bow.
@@ -82,11 +83,14 @@ impl Bowing {
         self.is_placed = true;
         let modes = values.modes().as_slice();
         let place = values.share(Param::BowPosition);
-        let weight = |mode: &Mode| fabs(mode.level.into()) * sin(PI * place * f64::from(mode.ratio));
+        let [mut weights, ..] = values.tilted_levels();
+        for (weight, mode) in weights.iter_mut().zip(modes) {
+            *weight = fabs(*weight) * sin(PI * place * f64::from(mode.ratio));
+        }
         // The squares of the weights that are played add up to 1.
-        let squares: f64 = modes.iter().take(MAX_MODES).map(weight).map(|weight| weight * weight).sum();
+        let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
         let scale = if squares > 0.0 { 1.0 / sqrt(squares) } else { 0.0 };
-        bank.set_contacts(|m| [modes.get(m).map_or(0.0, |mode| weight(mode) * scale) as f32; 2]);
+        bank.set_contacts(|m| [(weights[m] * scale) as f32; 2]);
     }
 
     /// The bow of the next frames, if it is on.

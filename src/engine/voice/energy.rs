@@ -24,7 +24,7 @@ const TICK: u64 = CONTROL_FRAMES as u64;
 /// The energy of a voice: sums of squared amplitudes. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Energy {
-    /// Upper bound of the energy that the strike will still add.
+    /// Upper bound of the energy that strikes in progress have added and will add.
     pending: f64,
     /// Energy of the bank when it was last measured.
     measured: f64,
@@ -41,7 +41,7 @@ impl Energy {
     pub(super) const NONE: Self =
         Self { pending: 0.0, measured: 0.0, until_measured: 0, interval: MEASURING_TICKS, end: None };
 
-    /// Adds to the energy that the strike has still to add. `more` may be negative.
+    /// Adds the energy of a strike. `more` may be negative.
     pub(super) fn expect(&mut self, more: f64) {
         self.pending += more;
     }
@@ -66,9 +66,9 @@ impl Energy {
         }
     }
 
-    /// The energy now, or, if it is greater, that of a strike that is still active.
-    pub(super) fn now(&self) -> f64 {
-        self.measured.max(self.pending)
+    /// The energy now, or, if it is greater, what the last strike has still to bring (`coming`).
+    pub(super) fn now(&self, coming: f64) -> f64 {
+        self.measured.max(coming)
     }
 
     /// Measures the remaining energy and puts silent modes to rest. Called at control ticks, but only measures every
@@ -103,8 +103,8 @@ impl Energy {
     }
 
     /// How loud the voice is, for voice stealing.
-    pub(super) fn rank(&self, fader: &Fader) -> f64 {
-        self.now() * fader.remaining()
+    pub(super) fn rank(&self, coming: f64, fader: &Fader) -> f64 {
+        self.now(coming) * fader.remaining()
     }
 
     /// Whether the voice will be silent until it is struck again.

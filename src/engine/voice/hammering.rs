@@ -90,9 +90,9 @@ pub(super) fn strengths(modes: &[Mode], frequency: f64, place: f64) -> [f64; MAX
     let mut weights = [0.0; MAX_CELLS * MAX_MODES];
     let mut from = 0;
     while from < modes.len() {
-        let last = modes[from].ratio * (1.0 + CHOIR);
-        let choir = &modes[from..];
-        let choir = &choir[..choir.iter().position(|mode| mode.ratio > last).unwrap_or(choir.len())];
+        let first = modes[from].ratio;
+        let (choir, of_choir) = (&modes[from..], first..=first * (1.0 + CHOIR));
+        let choir = &choir[..choir.iter().position(|mode| !of_choir.contains(&mode.ratio)).unwrap_or(choir.len())];
         let struck = choir.iter().filter(|mode| mode.strike > 0.0).count().max(1);
         let shape = sin(PI * place * f64::from(modes[from].ratio));
         weights[from..from + choir.len()].fill(4.0 * frequency * HEAVINESS * shape * shape / struck as f64);

@@ -26,7 +26,12 @@ impl Line {
 
     /// The current value: exactly the target after the last frame.
     pub(super) fn now(&self) -> f32 {
-        if self.passed < self.frames { self.from + self.passed as f32 * self.step } else { self.to }
+        if self.has_arrived() { self.to } else { self.from + self.passed as f32 * self.step }
+    }
+
+    /// Whether the ramp has ended.
+    pub(super) fn has_arrived(&self) -> bool {
+        self.passed >= self.frames
     }
 
     /// The target, at the next control tick.
@@ -36,7 +41,7 @@ impl Line {
 
     /// Whether the value is 0 and stays 0.
     pub(super) fn is_zero(&self) -> bool {
-        self.to == 0.0 && (self.from == 0.0 || self.passed >= self.frames)
+        self.to == 0.0 && (self.from == 0.0 || self.has_arrived())
     }
 
     /// The start value with the change per frame, and the frames since the start.

@@ -88,11 +88,11 @@ pub(crate) struct SynthVoice {
     let_go: Option<f32>,
     /// Whether the voice has had no control tick yet. The first one sets pitch and gain without a ramp.
     fresh: bool,
-    /// Whether the key is down or a pedal holds the note. Only then do bow and input drive the modes.
+    /// Whether the key is down or a pedal holds the note. Only then do bow, breath, held noise and input drive the modes.
     is_held: bool,
     /// Whether routes of the patch modulate tension or bloom.
     may_move: bool,
-    /// Whether routes of the patch modulate the level of the bow or of the input.
+    /// Whether routes of the patch modulate the level of the bow, of held noise or of the input.
     may_be_driven: bool,
     /// The strikes told apart, if labels are wanted.
     separation: Option<Box<Separation>>,
@@ -171,14 +171,14 @@ impl SynthVoice {
         if self.decay.control(&self.controls, modes, &mut self.bank) {
             self.energy.forget_end();
         }
-        let is_played = self.is_held && (self.controls.bow_speed > 0.0 || self.strike.blowing.may_blow());
+        let is_played = self.is_played();
         self.drift.control(&self.controls, is_played, [passed, self.clock.seconds(frames as u64)]);
         // What plays or touches feels the pitches of the modes.
         let is_felt = self.strike.is_touched() || self.strike.rattling.is_on();
         let frequency = (!is_felt).then(|| self.pitch.frequency());
         self.colour.control(self.slope(), &self.drift, frequency, modes, &mut self.bank);
         self.energy.measure_always(self.may_move || self.controls.tension > 0.0 || self.blooms());
-        let energy = || self.energy.now() / self.strike.full_energy();
+        let energy = || self.energy.now(self.strike.coming()) / self.strike.full_energy();
         let tension = self.tension.control(&self.controls, energy, self.fresh, self.sample_rate, frames);
         let bends = Bends { wheels, tuning: self.expressions.tuning.into(), tension };
         let mut start = None;
@@ -220,7 +220,7 @@ impl SynthVoice {
         }
         let Self { strike, modulators, bank, sample_rate, pitch, table, energy, .. } = self;
         let values = instrument.map(|instrument| StruckValues { instrument, modulators, table: *table });
-        let (share, note) = (energy.now() / strike.full_energy(), [pitch.frequency(), *sample_rate]);
+        let (share, note) = (energy.now(strike.coming()) / strike.full_energy(), [pitch.frequency(), *sample_rate]);
         let is_touched = strike.is_touched();
         let full = strike.full_force();
         if strike.rattling.control(values.as_ref(), [share, full], note, pitch.ratio(), is_touched, bank) {
@@ -238,7 +238,13 @@ impl SynthVoice {
             strike.held_noise.control(while_held(controls.noise_gain), *sample_rate, frames);
             let values = instrument.map(|instrument| StruckValues { instrument, modulators, table: *table });
             let note = || [pitch.frequency(), *sample_rate];
-            strike.bowing.control(controls, *is_held, values.as_ref(), note, bank, frames);
+            let is_blown = strike.blowing.is_on();
+            if is_blown {
+                strike.bowing.lift();
+            }
+            if strike.bowing.control(controls, [*is_held, is_blown], values.as_ref(), note, bank, frames) {
+                strike.blowing.lift();
+            }
             let note = || Blown {
                 frequency: pitch.frequency() * pitch.ratio(),
                 sample_rate: *sample_rate,
@@ -246,6 +252,11 @@ impl SynthVoice {
             };
             strike.blowing.control(controls, *is_held, values.as_ref(), note, bank, frames);
         }
+    }
+
+    /// Whether a bow or breath drives the note, or is about to.
+    fn is_played(&self) -> bool {
+        self.is_held && (self.controls.bow_speed > 0.0 || self.strike.blowing.may_blow())
     }
 
     /// Whether bow, breath, noise or input drive the note, or may start to.
@@ -319,7 +330,8 @@ impl SynthVoice {
 
     /// Whether energy moves to higher modes.
     fn blooms(&self) -> bool {
-        !self.strike.blowing.has_blown() && Bloom::acts(&self.controls, self.energy.now() / self.strike.full_energy())
+        let energy = || self.energy.now(self.strike.coming()) / self.strike.full_energy();
+        !self.strike.blowing.has_blown() && Bloom::acts(&self.controls, energy())
     }
 
     /// Frames until the voice is over if no event comes, `to_tick` frames before the next control tick: see

@@ -25,6 +25,9 @@ use crate::patch::Mode;
 /// Fade-out time of a stolen or choked voice.
 const FADE_SECONDS: f64 = 0.012;
 
+/// For this many seconds, a note that is played counts as loud as full scale where notes are stolen: it has yet to swing in.
+const SWINGS_IN: f64 = 0.3;
+
 impl SynthVoice {
     /// Strikes the modes with the patch's exciter.
     fn excite(&mut self, instrument: &Instrument, note: &Note) {
@@ -70,6 +73,7 @@ impl SynthVoice {
                 self.decay.read(values, &controls, &mut self.bank);
                 self.pitch.correct(values.instrument.sound.correction());
                 self.strike.blowing.lift();
+                self.strike.bowing.lift();
             }
             None => self.decay.press(controls.decay, self.decay.damping.touch),
         }
@@ -191,7 +195,9 @@ impl Voice for SynthVoice {
     }
 
     fn energy(&self) -> f64 {
-        self.energy.rank(&self.fader)
+        let swings_in = self.is_played() && self.clock.seconds(self.clock.age) < SWINGS_IN;
+        let least = if swings_in { 1.0 } else { 0.0 };
+        self.energy.rank(self.strike.coming().max(least), &self.fader)
     }
 
     fn is_over(&self) -> bool {

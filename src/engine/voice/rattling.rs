@@ -7,7 +7,7 @@ use crate::dsp::exciter::{Rattle, RattleKind, RattleLaw};
 use crate::dsp::mode_bank::MAX_MODES;
 use crate::params::{Param, Rattle as Kind};
 use crate::sound::contact::contact_time;
-use libm::{sin, sqrt};
+use libm::{fabs, sin, sqrt};
 use std::f64::consts::{PI, TAU};
 
 /// A mode that the strike does not move, such as those of wires and shell, hears the rattle without giving way to it: this share
@@ -16,6 +16,10 @@ const HEARD_ONLY: f64 = 0.01;
 
 /// A point that a full strike gives less speed than this does not move.
 const LEAST_SPEED: f64 = 1e-12;
+
+/// The rattle feels no mode that swings further than after so many full strikes. That may be one that earlier strikes have moved when it
+/// was heard louder: its swing would be thrown into modes that are heard louder now, and to and fro without end.
+const MOST_FELT: f64 = 4.0;
 
 /// Below this share of a full strike's energy, nothing rattles any more: −80 dB.
 const STILL: f64 = 1e-8;
@@ -105,7 +109,6 @@ impl Rattling {
             weigh_as_heard(&mut weights[..MAX_MODES], &pushes);
         }
         let struck = |m: usize| if self.has_bloomed { 1.0 } else { f64::from(modes[m].strike) };
-        let compliance = bank.set_touched(1, |m, _| [pushes[m], weights[m] * struck(m).max(HEARD_ONLY)]).iter().sum();
         // Speed and swing of the point after a full strike, from modes of any phases.
         let (mut speeds, mut swings) = (0.0, 0.0);
         for (m, mode) in modes.iter().enumerate().take(MAX_MODES) {
@@ -117,6 +120,14 @@ impl Rattling {
         if speed < LEAST_SPEED {
             return None;
         }
+        let mut swing_of = [0.0; MAX_MODES];
+        swing_of.iter_mut().zip(bank.masses()).for_each(|(swing, (_, energy))| *swing = sqrt(energy.into()));
+        let touch = |m: usize| {
+            let weight = weights[m] * struck(m).max(HEARD_ONLY);
+            let is_felt = swing_of[m] <= MOST_FELT * full * fabs(pushes[m]);
+            if is_felt { [pushes[m], weight] } else { [0.0; 2] }
+        };
+        let compliance = bank.set_touched(1, |m, _| touch(m)).iter().sum();
         let kind = match self.kind {
             Kind::Loose => RattleKind::Loose {
                 mass: values.get(Param::RattleMass),

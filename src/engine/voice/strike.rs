@@ -37,8 +37,9 @@ pub(super) struct Strike {
     drive: Drive,
     /// Forces of the last strike: those of mallet, pluck and noise.
     forces: [f64; 3],
-    /// Energy that these forces add.
+    /// Energy that these forces add, and that of the noise alone.
     energy: f64,
+    noise_energy: f64,
     /// The forces of the same strike at full velocity and without routes, and the energy that they would add.
     full_forces: [f64; 3],
     full_energy: f64,
@@ -65,6 +66,7 @@ impl Strike {
             drive: Drive::NONE,
             forces: [0.0; 3],
             energy: 0.0,
+            noise_energy: 0.0,
             full_forces: [0.0; 3],
             full_energy: 0.0,
             is_noisy: false,
@@ -121,14 +123,28 @@ impl Strike {
         self.key
     }
 
+    /// The energy that the last strike has still to bring: that of pulses until they are over, that of noise in the measure in which
+    /// it comes.
+    pub(super) fn coming(&self) -> f64 {
+        let (has_pulses, noise) = self.exciter.coming();
+        let has_pulses = has_pulses || self.hammering.is_on();
+        let pulses = if has_pulses { self.energy - self.noise_energy } else { 0.0 };
+        pulses + noise * self.noise_energy
+    }
+
     /// Whether a hammer, a bow or breath acts on the modes by how they move.
     pub(super) fn is_touched(&self) -> bool {
-        self.hammering.is_on() || self.bowing.is_on() || self.blowing.is_on()
+        self.hammering.is_on() || self.is_played_on()
+    }
+
+    /// Whether a bow or breath acts, which need the contacts of the modes for themselves.
+    fn is_played_on(&self) -> bool {
+        self.bowing.is_on() || self.blowing.is_on()
     }
 
     /// Whether a player, held noise or incoming sound acts.
     pub(super) fn is_played(&self) -> bool {
-        self.bowing.is_on() || self.blowing.is_on() || self.input.is_on() || self.held_noise.is_on()
+        self.is_played_on() || self.input.is_on() || self.held_noise.is_on()
     }
 
     /// Frames until no force is left.
@@ -169,7 +185,7 @@ impl Strike {
         let [full_mallet, full_pluck, full_burst] = self.full_forces;
         let reach = values.share(Param::NoiseReach);
         let turned_noise = table.has_phases();
-        let (mut noisy, mut energy, mut full) = (false, 0.0, 0.0);
+        let (mut noisy, mut energy, mut burst_energy, mut full) = (false, 0.0, 0.0, 0.0);
         let cells = table.as_slice().chunks(MAX_MODES).zip(values.tilted_levels());
         for (cell, (modes, mut levels)) in cells.enumerate() {
             let (first, ratios) = (cell * MAX_MODES, ratios(modes));
@@ -181,25 +197,27 @@ impl Strike {
                 gains.turn = self.turns(table, first);
             }
             // The sums follow in a loop of their own, so that the compiler can use vector instructions in this one.
-            let mut energies = [[0.0; MAX_MODES]; 2];
+            let mut energies = [[0.0; MAX_MODES]; 3];
             for (m, mode) in modes.iter().enumerate() {
                 let (level, strike) = (levels[m], f64::from(mode.strike));
                 let (push, pull) = (level * strike * at_mallet[m], level * strike * at_finger[m]);
                 let noise = level * (1.0 - strike * (1.0 - reach));
                 (gains.push[m], gains.pull[m], gains.noise[m]) = (push as f32, pull as f32, noise as f32);
                 let (pulses, burst) = (fabs(push * mallet) + fabs(pull * pluck), noise * burst);
-                energies[0][m] = pulses * pulses + burst * burst;
+                (energies[0][m], energies[2][m]) = (pulses * pulses + burst * burst, burst * burst);
                 let (pulses, burst) = (fabs(push * full_mallet) + fabs(pull * full_pluck), noise * full_burst);
                 energies[1][m] = pulses * pulses + burst * burst;
             }
             noisy |= gains.noise.iter().any(|noise| *noise != 0.0);
-            let [own, whole] = energies.each_ref().map(|row| &row[..modes.len()]);
+            let [own, whole, noise] = energies.each_ref().map(|row| &row[..modes.len()]);
             energy = own.iter().fold(energy, |sum, mode| sum + mode);
             full = whole.iter().fold(full, |sum, mode| sum + mode);
+            burst_energy += noise.iter().sum::<f64>();
             bank.set_excitation_gains(cell, &gains);
         }
         let more = energy - self.energy;
         (self.energy, self.full_energy, self.is_noisy) = (energy, full, noisy);
+        self.noise_energy = burst_energy;
         more
     }
 
@@ -244,6 +262,7 @@ impl Strike {
             && knobs.choice::<Coefficients>(Param::Coefficients) == Coefficients::Exact
             && exciter_gain(values.get(Param::BowLevel)) == 0.0
             && !self.blowing.may_blow()
+            && !self.is_played_on()
     }
 
     /// Reads the strike's parameters and starts the exciters. `frequency` is the note's, in Hz. Returns the energy that the

@@ -149,7 +149,7 @@ impl Pair {
             let audible = (0..heard.modes.len()).filter(|m| level(heard, *m) > least);
             let (mut modes, mut phases): (Vec<Mode>, Vec<f32>) =
                 audible.map(|m| self.mode(heard, m, gains, most, t60)).unzip();
-            modes.resize(count.unwrap_or(modes.len()).max(1), Mode { level: 0.0, ..Mode::UNIT });
+            modes.resize(count.unwrap_or(modes.len()).max(1), Mode { level: 0.0, strike: 0.0, ..Mode::UNIT });
             phases.resize(modes.len(), 0.0);
             ModeTable::new(&modes).with_phases(&phases)
         };
