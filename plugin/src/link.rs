@@ -132,19 +132,23 @@ impl Link {
         self.repaint.request_repaint();
     }
 
-    /// The messages since the last call, joined to one line. Something went wrong if any of them says so.
+    /// The messages since the last call, as one.
     pub(crate) fn take_messages(&self) -> Option<Result<String, String>> {
-        let messages = std::mem::take(&mut *lock(&self.messages));
-        let is_ok = messages.iter().all(Result::is_ok);
-        let line =
-            messages.into_iter().map(|message| message.unwrap_or_else(|error| error)).collect::<Vec<_>>().join("; ");
-        (!line.is_empty()).then_some(if is_ok { Ok(line) } else { Err(line) })
+        joined(std::mem::take(&mut *lock(&self.messages)))
     }
 
     /// The sample rate in Hz; 0 before the first one is known.
     pub(crate) fn sample_rate(&self) -> u32 {
         self.sample_rate.load(Relaxed)
     }
+}
+
+/// Messages joined to one line, if they say anything. Something went wrong if any of them says so.
+pub(crate) fn joined(messages: Vec<Result<String, String>>) -> Option<Result<String, String>> {
+    let is_ok = messages.iter().all(Result::is_ok);
+    let texts = messages.into_iter().map(|message| message.unwrap_or_else(|error| error));
+    let line = texts.filter(|text| !text.is_empty()).collect::<Vec<_>>().join("; ");
+    (!line.is_empty()).then_some(if is_ok { Ok(line) } else { Err(line) })
 }
 
 #[cfg(test)]

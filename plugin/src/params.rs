@@ -233,21 +233,34 @@ impl SprungParams {
     ///
     /// An open window stays as it is: it must not change under the user's hands when the host steps through sounds or
     /// takes something back.
-    pub(crate) fn load(&self, Read { state, complaints }: Read) -> Arc<Loaded> {
-        let state = if self.is_effect { state.driven() } else { state };
-        self.load_as_it_is(Read { state, complaints })
+    pub(crate) fn load(&self, read: Read) -> Arc<Loaded> {
+        self.load_over(read, |_, _| true)
+    }
+
+    /// The state of a sound that is chosen, as this plugin plays it: in the effect, incoming sound drives it.
+    pub(crate) fn suited(&self, state: State) -> State {
+        if self.is_effect { state.driven() } else { state }
     }
 
     /// Loads a preset or kit that the host has chosen; the window begins anew with it. Not for the audio thread.
     pub(crate) fn load_for_host(&self, playable: Playable) {
         let State { seed, view, .. } = self.state();
-        self.load(State::new(playable, seed, view).into());
+        self.load(self.suited(State::new(playable, seed, view)).into());
         self.locked().loads += 1;
         self.link.repaint.request_repaint();
     }
 
-    /// As [`SprungParams::load`], but the effect changes nothing in it.
-    fn load_as_it_is(&self, Read { state, complaints }: Read) -> Arc<Loaded> {
+    /// Loads what becomes of the present state by a change. Knobs that the change leaves alone stay where they are, also if the host
+    /// turns them meanwhile. Returns the loaded sound, or none if the change returns none. Otherwise like [`SprungParams::load`].
+    pub(crate) fn change(&self, change: impl FnOnce(State) -> Option<State>) -> Option<Arc<Loaded>> {
+        let before = self.state();
+        let positions = before.positions;
+        let after = change(before)?;
+        Some(self.load_over(after.into(), |index, position| position.to_bits() != positions[index].to_bits()))
+    }
+
+    /// Like [`SprungParams::load`], for those knobs that `turns` returns true for, by place in the table and wanted position.
+    fn load_over(&self, Read { state, complaints }: Read, turns: impl Fn(usize, f32) -> bool) -> Arc<Loaded> {
         let loaded = Arc::new(state.loaded());
         let note_names = note_names(&state.playable);
         let mut locked = self.locked();
@@ -260,8 +273,10 @@ impl SprungParams {
         locked.loaded = loaded.clone();
         locked.may_sound.keep(&loaded);
         self.slot.put(loaded.clone(), || {
-            for (knob, position) in self.knobs.iter().zip(state.positions) {
-                knob.turn(position);
+            for (index, (knob, position)) in self.knobs.iter().zip(state.positions).enumerate() {
+                if turns(index, position) {
+                    knob.turn(position);
+                }
             }
         });
         locked.may_sound.collect();
@@ -345,11 +360,9 @@ unsafe impl Params for SprungParams {
             read.complaints
                 .iter()
                 .for_each(|complaint| nice_warn!("a state was not understood as a whole: {complaint}"));
-            if fields.contains_key(state::EFFECT_FIELD) {
-                self.load_as_it_is(read);
-            } else {
-                self.load(read);
-            }
+            let is_as_played = fields.contains_key(state::EFFECT_FIELD);
+            let state = if is_as_played { read.state } else { self.suited(read.state) };
+            self.load(Read { state, ..read });
             self.locked().loads += 1;
         }
     }

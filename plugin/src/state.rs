@@ -19,6 +19,7 @@ use sprung::patch::Patch;
 use sprung::patch::routes::amount_param;
 use sprung::preset::{KitPreset, Playable, Preset};
 use sprung::units::note_name;
+use sprung_picture::play::EXCITERS;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -27,10 +28,6 @@ pub(crate) const FIELD: &str = "sprung";
 
 /// The wrapper's name for a mark in states of the effect, whose sounds are loaded without changes.
 pub(crate) const EFFECT_FIELD: &str = "resonator";
-
-/// What moves the masses, besides the sound that comes in.
-const EXCITERS: [Param; 6] =
-    [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel, Param::NoiseHeld, Param::BowLevel, Param::BreathLevel];
 
 /// The state format that is read and written.
 const FORMAT: u64 = 1;
@@ -173,10 +170,12 @@ impl State {
         if is_driven(&self.values) || is_any_driven {
             return self;
         }
+        let levels = EXCITERS.iter().flat_map(|exciter| std::iter::once(exciter.level).chain(exciter.also));
+        let others: Vec<Param> = levels.filter(|level| *level != input).collect();
         let mut set = vec![(input, 0.0)];
-        set.extend(EXCITERS.map(|param| (param, param.info().min)));
+        set.extend(others.iter().map(|param| (*param, param.info().min)));
         if let Playable::Preset(preset) = &self.playable {
-            let routes = preset.patch.routes.iter().filter(|(_, route)| EXCITERS.contains(&route.destination));
+            let routes = preset.patch.routes.iter().filter(|(_, route)| others.contains(&route.destination));
             set.extend(routes.map(|(place, _)| (amount_param(place), 0.0)));
         }
         for (param, value) in set {

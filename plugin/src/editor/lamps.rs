@@ -117,9 +117,8 @@ impl Lamp {
         let response = ui.interact(rect, Id::unique(("lamp", self.section)), Sense::click());
         response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_on, self.section));
         if response.clicked() {
-            for (param, value) in self.switched(controls) {
-                controls.set(param.info(), value);
-            }
+            let values = self.switched(controls);
+            controls.set_all(format!("{} {}", self.section, if is_on { "off" } else { "on" }), values);
         }
         if is_on {
             ui.painter().circle_filled(rect.center(), 3.5, palette.accent);

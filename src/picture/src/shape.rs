@@ -60,7 +60,7 @@ pub fn or_suggested(origin: &Origin, family: Option<Family>, tags: &[String]) ->
     }
 }
 
-/// The figure of a sound's body in a picture of the size of a letter or two: of its model's, or of one that suits its family.
+/// The figure of a sound's body in a picture of the size of a letter or two: of its model's, or of one that suits its family. Allocates.
 pub fn small_figure(modes: &ModeTable, family: Option<Family>, tags: &[String]) -> Figure {
     match Origin::of(modes).with_places().body() {
         Some(body) => Figure::small(body),
@@ -70,7 +70,7 @@ pub fn small_figure(modes: &ModeTable, family: Option<Family>, tags: &[String]) 
 }
 
 impl BodyShape {
-    /// The body of a sound of this family. This is slow: it computes the shapes of all modes.
+    /// The body of a sound of this family. This is slow and allocates: it computes the shapes of all modes.
     pub fn of(modes: &ModeTable, family: Option<Family>, tags: &[String]) -> Self {
         let origin = Origin::of(modes);
         let is_mass = origin.body().is_some_and(|body| body.model == Model::Mass);

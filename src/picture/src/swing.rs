@@ -17,8 +17,9 @@ pub struct Swing {
 }
 
 impl Swing {
-    /// Goes on by some seconds; without them, all modes stay at their greatest bend. Returns the displacement of each point in a picture of this size, for the energies of the modes:
-    /// each moves as far as it does in truth, as a share of the greatest since the body was at rest.
+    /// Goes on by some seconds; without them, all modes stay at their greatest bend. Returns the displacement of each point in a picture
+    /// of this size, in its unit, for the energies of the modes, which are squared amplitudes: each moves as far as it does in truth, as
+    /// a share of the greatest since the body was at rest. Allocates.
     pub fn advance(&mut self, seconds: Option<f32>, shape: &BodyShape, energies: &[f32], rect: Rect) -> Vec<f32> {
         let amplitudes = self.amplitudes(seconds, shape, energies);
         let reach = shape.figure.form.reach(rect);

@@ -91,20 +91,27 @@ impl BodyEdit {
             }
         };
         self.good = (self.origin.clone(), self.what.clone());
-        let mut state = controls.params.state();
-        let Playable::Preset(preset) = &mut state.playable else { return Ok(()) };
-        preset.patch.modes = modes;
         // The modes' decays are relative to the parameter *Decay*.
         let decay = Param::Decay.info();
         let value = decay.clamp((self.decay * self.origin.t60().unwrap_or(1.0)) as f32);
-        if value != state.values.get(Param::Decay) {
-            preset.patch.set(Param::Decay, value);
-            state.values.set(Param::Decay, value);
-            state.positions[Param::Decay as usize] = decay.normalise(value) as f32;
-        }
-        self.loaded = controls.params.load(state.into());
-        self.next = now + rest(start);
+        let loaded = controls.params.change(|mut state| {
+            let Playable::Preset(preset) = &mut state.playable else { return None };
+            preset.patch.modes = modes;
+            if value != state.values.get(Param::Decay) {
+                preset.patch.set(Param::Decay, value);
+                state.values.set(Param::Decay, value);
+                state.positions[Param::Decay as usize] = decay.normalise(value) as f32;
+            }
+            Some(state)
+        });
+        let Some(loaded) = loaded else { return Ok(()) };
+        (self.loaded, self.next) = (loaded, now + rest(start));
         Ok(())
+    }
+
+    /// Whether the sound is yet to be made from the body that was set last.
+    pub(super) fn is_due(&self) -> bool {
+        self.is_new
     }
 
     /// Makes the sound a last time and ends the undo step. The error is that of [`BodyEdit::write`].

@@ -6,7 +6,7 @@ use super::offer::{offer, offer_pad};
 use super::origin::OriginShown;
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
-use crate::editor::keyboard::audition::Audition;
+use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::theme::{GAP, PADDING, SMALL};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
@@ -86,12 +86,7 @@ impl BodyPage {
         if let Some((changed, what)) = picked {
             self.leave(controls);
             let message = BodyEdit::make(&origin, changed, what, shown.loaded(), controls).err();
-            self.audition.strike(
-                shown.guide().home,
-                crate::editor::keyboard::audition::VELOCITY,
-                now,
-                controls.params.link(),
-            );
+            self.audition.strike(shown.guide().home, VELOCITY, now, controls.params.link());
             return message;
         }
         if origin == Origin::Table { None } else { self.numbers(ui, rest, &origin, shown, controls) }
@@ -200,7 +195,7 @@ impl BodyPage {
             return None;
         }
         let rows = ((rect.height() / CELL[1]) as usize).max(1);
-        let mut is_held = false;
+        let (mut is_held, mut is_dragged, mut has_changed) = (false, false, false);
         let mut inner = ui.new_child(UiBuilder::new().id_salt("body numbers").max_rect(rect));
         ScrollArea::horizontal().auto_shrink(false).show(&mut inner, |ui| {
             let columns = numbers.len().div_ceil(rows) as f32;
@@ -209,7 +204,9 @@ impl BodyPage {
             for (place, number) in numbers.iter().enumerate() {
                 let corner = area.min + vec2((place / rows) as f32, (place % rows) as f32) * cell;
                 let (response, value) = show(ui, Rect::from_min_size(corner, cell), number, controls);
-                is_held |= response.dragged() || response.has_focus();
+                is_dragged |= response.dragged();
+                is_held |= is_dragged || response.has_focus();
+                has_changed |= response.changed();
                 if response.changed() && value != number.value {
                     let mut changed = self.edit.as_ref().map_or(origin, BodyEdit::origin).clone();
                     self.part.set(&mut changed, number.name, value);
@@ -222,9 +219,16 @@ impl BodyPage {
         let edit = self.edit.as_mut()?;
         let now = ui.input(|input| input.time);
         let message = edit.write(now, controls).err();
-        self.audition.repeat(shown.guide().home, now, controls.params.link());
+        let (home, link) = (shown.guide().home, controls.params.link());
+        if is_dragged {
+            self.audition.repeat(home, now, link);
+        } else if has_changed {
+            self.audition.strike(home, VELOCITY, now, link);
+        }
         if is_held {
-            ui.ctx().request_repaint();
+            if is_dragged || edit.is_due() {
+                ui.ctx().request_repaint();
+            }
             return message;
         }
         message.or(self.edit.take().and_then(|edit| edit.end(controls).err()))

@@ -1,6 +1,7 @@
 //! The browser's details of a sound, and the field to save a sound under a name.
 
 use super::sounds::Sounds;
+use crate::editor::controls::gestures::touch;
 use crate::editor::controls::{Controls, Hint, Pick, Said};
 use crate::editor::theme::{SMALL, TEXT, TITLE_HEIGHT, font};
 use crate::editor::widgets::buttons::{Look, button};
@@ -93,9 +94,10 @@ pub(super) struct Details {
 }
 
 impl Details {
-    /// Resets the field to the name of the loaded sound.
+    /// Resets the field to the name of the loaded sound. What was typed to be saved with it stays.
     pub(super) fn open(&mut self, name: &str) {
-        *self = Self { name: name.to_owned(), of: name.to_owned(), ..Self::default() };
+        let about = self.about.take().filter(|_| self.of == name);
+        *self = Self { name: name.to_owned(), of: name.to_owned(), about, ..Self::default() };
     }
 
     /// Gives the field the focus when it is shown next.
@@ -256,6 +258,7 @@ impl Details {
         let starred = star().map_err(|error| format!("renamed, but its place in lists may be lost: {error}"));
         if controls.params.name() == own.name() {
             controls.params.rename(name);
+            touch(controls.params, controls.host);
         }
         Outcome { is_stale: true, ..Outcome::of(starred.map(|()| format!("renamed {}", path.display()))) }
     }
@@ -279,6 +282,7 @@ impl Details {
             Ok(path) => {
                 controls.params.rename(name);
                 controls.params.describe_as(&sound);
+                touch(controls.params, controls.host);
                 controls.history.saved(controls.params);
                 Ok(format!("saved {}", path.display()))
             }

@@ -102,6 +102,7 @@ impl Browser {
     /// Shows the browser. Returns a message, and whether the user is done here.
     pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, controls: &mut Controls) -> Option<(Said, bool)> {
         let palette = controls.palette;
+        let are_new = self.sounds.is_none();
         let mut sounds = self.sounds.take().unwrap_or_else(|| Sounds::read(self.library.clone()));
         palette.paint_panel(ui.painter(), rect);
         let inner = rect.shrink(PADDING);
@@ -184,8 +185,8 @@ impl Browser {
         }
         let message = compared.map(Err).or(message);
         let is_stale = outcome.as_ref().is_some_and(|outcome| outcome.is_stale);
-        let broken =
-            sounds.broken.first().map(|first| format!("{} of your files cannot be read: {first}", sounds.broken.len()));
+        let broken = sounds.broken.first().filter(|_| are_new);
+        let broken = broken.map(|first| format!("{} of your files cannot be read: {first}", sounds.broken.len()));
         self.sounds = (!is_stale).then_some(sounds);
         match outcome {
             Some(Outcome { message, is_done, compares: false, .. }) => Some((message, is_done)),

@@ -11,5 +11,5 @@ use sprung::preset::Playable;
 pub(crate) fn load(playable: Playable, params: &SprungParams, host: &GuiContext) {
     let State { seed, view, pad, .. } = params.state();
     let pad = pad.filter(|_| matches!(playable, Playable::Preset(_)));
-    gestures::load(State { pad, ..State::new(playable, seed, view) }, params, host);
+    gestures::load(params.suited(State { pad, ..State::new(playable, seed, view) }), params, host);
 }

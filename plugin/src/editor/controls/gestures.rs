@@ -69,6 +69,14 @@ pub(crate) fn load(state: State, params: &SprungParams, host: &GuiContext) {
     announce(params, host, &before);
 }
 
+/// Changes the present state by `change`, and tells the host which knobs have moved. Does nothing if there is no other state.
+pub(crate) fn change(params: &SprungParams, host: &GuiContext, change: impl FnOnce(State) -> Option<State>) {
+    let before = positions(params);
+    if params.change(change).is_some() {
+        announce(params, host, &before);
+    }
+}
+
 /// Asks the host for its own menu of a parameter, at a place in the window.
 #[allow(unsafe_code, reason = "the wrapper's interface is unsafe")]
 pub(crate) fn show_host_menu(params: &SprungParams, host: &GuiContext, info: &ParamInfo, [x, y]: [i32; 2]) {

@@ -5,16 +5,22 @@ use super::gestures::{Gestures, load};
 use crate::params::SprungParams;
 use crate::state::State;
 use nice_plug_core::context::gui::GuiContext;
-use sprung::params::{PARAM_COUNT, Values};
+use sprung::params::{PARAM_COUNT, PARAMS, Values};
 use sprung::preset::Playable;
+use std::time::{Duration, Instant};
 
 /// How many steps can be undone.
 const STEPS: usize = 100;
+
+/// Turns of one knob that follow each other within this time, by wheel or arrow keys, are one step.
+const PAUSE: Duration = Duration::from_millis(700);
 
 /// A state, with the name of the action before or after it.
 struct Step {
     name: String,
     state: State,
+    /// The knobs that the action moved. Others are left where they are by then, since a host or a controller may have moved them.
+    moved: Vec<usize>,
     /// Whether the action replaced the sound by the other one of the two versions.
     swaps: bool,
     /// See [`History::is_changed`].
@@ -30,6 +36,8 @@ pub(crate) struct History {
     redo: Vec<Step>,
     /// The state before the action in progress.
     open: Option<State>,
+    /// The knob that was turned last, and when.
+    turned: Option<(usize, Instant)>,
     is_changed: bool,
     /// The name of the sound that was chosen last, until somebody has looked.
     chosen: Option<String>,
@@ -52,7 +60,25 @@ impl History {
 
     /// Ends the action in progress: it becomes a step if it has changed anything.
     pub(crate) fn end(&mut self, name: impl Into<String>, params: &SprungParams) {
-        self.end_step(name.into(), false, true, params);
+        self.end_step(name.into(), false, true, params, |_| true);
+    }
+
+    /// Like [`History::end`], after an action that can only have moved these knobs.
+    pub(crate) fn end_of(&mut self, moved: &[usize], name: String, params: &SprungParams) {
+        self.end_step(name, false, true, params, |index| moved.contains(&index));
+    }
+
+    /// Like [`History::end_of`], after a turn by wheel or key, which goes on with one just before.
+    pub(crate) fn end_of_turn(&mut self, index: usize, name: String, params: &SprungParams) {
+        let before = self.turned.replace((index, Instant::now()));
+        let goes_on = before.is_some_and(|(knob, then)| knob == index && then.elapsed() < PAUSE);
+        match self.undo.last_mut().filter(|step| goes_on && step.moved == [index]) {
+            Some(step) => {
+                (step.name, self.open) = (name, None);
+                self.redo.clear();
+            }
+            None => self.end_of(&[index], name, params),
+        }
     }
 
     /// Loads a sound as one step.
@@ -65,7 +91,7 @@ impl History {
         // In the place of a pad's sound, it is a change of the kit, of which nothing is lost.
         let is_changed = params.pad().is_some();
         self.lost.take_if(|_| is_changed);
-        self.end_step(name, false, is_changed, params);
+        self.end_step(name, false, is_changed, params, |_| true);
         self.is_changed = is_changed;
     }
 
@@ -94,7 +120,7 @@ impl History {
 
     /// Like [`History::end`], after the sound was replaced by the other one of the two versions, which may be changed.
     pub(crate) fn end_swap(&mut self, name: &str, is_changed: bool, params: &SprungParams) {
-        self.end_step(name.to_owned(), true, is_changed, params);
+        self.end_step(name.to_owned(), true, is_changed, params, |_| true);
     }
 
     /// The sound was saved as it is. That of a pad is a part of a kit, which was not.
@@ -113,15 +139,26 @@ impl History {
 
     /// Like [`History::end`], after a sound was taken from a kit's pad or put back, which loses no change.
     pub(crate) fn end_of_pad(&mut self, name: String, is_changed: bool, params: &SprungParams) {
-        self.end_step(name, false, is_changed, params);
+        self.end_step(name, false, is_changed, params, |_| true);
     }
 
-    fn end_step(&mut self, name: String, swaps: bool, is_changed: bool, params: &SprungParams) {
+    fn end_step(
+        &mut self,
+        name: String,
+        swaps: bool,
+        is_changed: bool,
+        params: &SprungParams,
+        may_move: impl Fn(usize) -> bool,
+    ) {
         let Some(state) = self.open.take() else { return };
-        if same_sound(&state, &params.state()) {
+        let after = params.state();
+        let has_moved = |index: &usize| state.positions[*index].to_bits() != after.positions[*index].to_bits();
+        let moved: Vec<usize> = (0..PARAM_COUNT).filter(|index| may_move(*index) && has_moved(index)).collect();
+        if moved.is_empty() && state.values == after.values && same_but_for_knobs(&state, &after) {
             return;
         }
-        self.undo.push(Step { name, state, swaps, is_changed: std::mem::replace(&mut self.is_changed, is_changed) });
+        let is_changed = std::mem::replace(&mut self.is_changed, is_changed);
+        self.undo.push(Step { name, state, moved, swaps, is_changed });
         self.redo.clear();
         if self.undo.len() > STEPS {
             self.undo.remove(0);
@@ -140,18 +177,27 @@ impl History {
 
     /// Undoes the last step. Returns whether the two versions change places by this.
     pub(crate) fn undo(&mut self, params: &SprungParams, host: &GuiContext) -> bool {
+        self.turned = None;
         go([&mut self.undo, &mut self.redo], &mut self.is_changed, params, host)
     }
 
     /// Redoes the step that was undone last. Returns whether the two versions change places by this.
     pub(crate) fn redo(&mut self, params: &SprungParams, host: &GuiContext) -> bool {
+        self.turned = None;
         go([&mut self.redo, &mut self.undo], &mut self.is_changed, params, host)
     }
 }
 
 fn go([from, to]: [&mut Vec<Step>; 2], is_changed: &mut bool, params: &SprungParams, host: &GuiContext) -> bool {
-    let Some(Step { name, state, swaps, is_changed: then }) = from.pop() else { return false };
-    to.push(Step { name, state: params.state(), swaps, is_changed: std::mem::replace(is_changed, then) });
+    let Some(Step { name, mut state, moved, swaps, is_changed: then }) = from.pop() else { return false };
+    let now = params.state();
+    if same_but_for_knobs(&state, &now) {
+        for index in (0..PARAM_COUNT).filter(|index| !moved.contains(index)) {
+            state.positions[index] = now.positions[index];
+            state.values.set(PARAMS[index].param, now.values.get(PARAMS[index].param));
+        }
+    }
+    to.push(Step { name, state: now, moved, swaps, is_changed: std::mem::replace(is_changed, then) });
     restore(state, params, host);
     swaps
 }

@@ -83,6 +83,8 @@ pub(super) struct Interaction {
     pub(super) pick: Option<Pick>,
     /// The knob under a source that is being dragged, in this pass.
     pub(super) aim: Option<&'static ParamInfo>,
+    /// What the wheel has scrolled of a step over a knob that has whole ones, and that knob.
+    pub(super) scrolled: Option<(usize, f64)>,
     /// Whether the wheel has scrolled a page since the pointer moved last.
     pub(super) is_scrolling: bool,
     /// The place over which it is held, to show what is behind it, and since when.
@@ -213,10 +215,38 @@ impl Controls<'_> {
 
     /// Ends a knob's gesture, if there is one.
     pub(super) fn release(&mut self) {
-        let Some(index) = self.interaction.gestures.moving() else { return };
+        if let Some((index, name)) = self.end_gesture() {
+            self.history.end_of(&[index], name, self.params);
+        }
+    }
+
+    /// Moves a knob by wheel or key: turns that follow each other are one step.
+    pub(super) fn nudge(&mut self, info: &ParamInfo, position: f64) {
+        self.turn(info, position);
+        if let Some((index, name)) = self.end_gesture() {
+            self.history.end_of_turn(index, name, self.params);
+        }
+    }
+
+    /// Ends a knob's gesture, if there is one. Returns the knob, and what was done in words.
+    fn end_gesture(&mut self) -> Option<(usize, String)> {
+        let index = self.interaction.gestures.moving()?;
         self.interaction.gestures.end(self.params, self.host);
         let info = &PARAMS[index];
-        self.history.end(format!("{} {}", info.name, self.text(info)), self.params);
+        Some((index, format!("{} {}", info.name, self.text(info))))
+    }
+
+    /// Gives parameters values, as one step of this name.
+    pub(super) fn set_all(&mut self, name: String, values: Vec<(Param, f32)>) {
+        self.release();
+        self.history.begin(self.params);
+        for (param, value) in &values {
+            let position = param.info().normalise(*value) as f32;
+            self.interaction.touched = Some(*param as usize);
+            self.interaction.gestures.set(self.params, self.host, *param as usize, position);
+        }
+        let moved: Vec<usize> = values.iter().map(|(param, _)| *param as usize).collect();
+        self.history.end_of(&moved, name, self.params);
     }
 
     /// Gives a parameter a value, as one gesture.

@@ -186,9 +186,7 @@ impl Detail {
                 let mut turned = now.clone();
                 set_number(&mut turned, value);
                 // The host is told at the end.
-                if let Some(state) = edited(controls, |kit| set(kit, key, Some(turned))) {
-                    controls.params.load(state.into());
-                }
+                controls.params.change(|state| edited(state, |kit| set(kit, key, Some(turned))));
             }
         }
         if !is_held {

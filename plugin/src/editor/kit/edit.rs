@@ -1,7 +1,7 @@
 //! Changes of a kit: sounds are put on pads, pads are moved, copied, emptied and set.
 
 use crate::editor::controls::Controls;
-use crate::editor::controls::gestures::load;
+use crate::editor::controls::gestures::{self, load};
 use crate::editor::controls::history::History;
 use crate::params::SprungParams;
 use crate::state::{EditedPad, State};
@@ -21,9 +21,8 @@ pub(super) const SECOND: u8 = 38;
 
 /// Changes the kit as one step that can be undone.
 pub(super) fn change(what: String, controls: &mut Controls, edit: impl FnOnce(&mut KitPreset)) {
-    let Some(state) = edited(controls, edit) else { return };
     controls.history.begin(controls.params);
-    load(state, controls.params, controls.host);
+    gestures::change(controls.params, controls.host, |state| edited(state, edit));
     controls.history.end(what, controls.params);
 }
 
@@ -72,8 +71,7 @@ fn give(kit: &mut KitPreset, key: u8, preset: &Preset) {
 }
 
 /// The state with a changed kit; none while a preset is loaded.
-pub(super) fn edited(controls: &Controls, edit: impl FnOnce(&mut KitPreset)) -> Option<State> {
-    let state = controls.params.state();
+pub(super) fn edited(state: State, edit: impl FnOnce(&mut KitPreset)) -> Option<State> {
     let Playable::Kit(kit) = &state.playable else { return None };
     // The knobs of one sound have its values, those of several move all: from one to several, it takes them with it.
     let was_single = kit.sounds.len() == 1;

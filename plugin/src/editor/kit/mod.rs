@@ -12,7 +12,6 @@ use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::keyboard::grid::KeyGrid;
-use crate::editor::pages::Request;
 use crate::editor::theme::{GAP, PADDING, TEXT};
 use crate::editor::widgets::buttons::{Look, button, help_tab, tab};
 use crate::editor::widgets::text::line;
@@ -27,6 +26,13 @@ use sprung::preset::{Playable, Preset};
 use sprung::units::note_name;
 use sprung_picture::{Figure, small_figure};
 use std::sync::Arc;
+
+/// What the user asks for.
+pub(super) enum Request {
+    Manual,
+    /// To change the sound of the chosen pad.
+    Edit,
+}
 
 /// Shares of the width that sounds and the chosen pad have, and their least and greatest widths.
 const SIDES: [(f32, [f32; 2]); 2] = [(0.17, [130.0, 190.0]), (0.28, [180.0, 300.0])];
@@ -148,7 +154,7 @@ impl KitPage {
             self.carry_out(ui, deed, shown, controls);
         }
         self.audition.request_end(ui);
-        if edits { Some(Request::Sound) } else { request }
+        if edits { Some(Request::Edit) } else { request }
     }
 
     /// Shows which pads are seen, and buttons to see others.

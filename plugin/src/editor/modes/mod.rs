@@ -34,15 +34,15 @@ pub(super) struct ModesView {
     axes: Option<Axes>,
     drag: Option<Drag>,
     snap: Snap,
-    /// The mode that was touched last.
-    selected: Option<usize>,
+    /// The mode that was touched last, and how many modes the sound had.
+    selected: Option<(usize, usize)>,
     audition: Audition,
 }
 
 impl ModesView {
     /// The mode that was touched last.
     pub(super) fn selected(&self) -> Option<usize> {
-        self.selected
+        self.selected.map(|(mode, _)| mode)
     }
 
     /// Drops the drag, if there is one, and releases the key, which a double click holds too.
@@ -63,6 +63,7 @@ impl ModesView {
     pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, shown: &Shown, energies: &[f32], controls: &mut Controls) {
         let palette = controls.palette;
         let (patch, is_editable) = (shown.patch(), shown.preset().is_some());
+        self.selected.take_if(|(_, count)| *count != patch.modes.as_slice().len());
         self.audition.follow_time(ui.input(|input| input.time), controls.params.link());
         let is_other = |drag: &Drag| !drag.is_of(&controls.params.loaded());
         if !is_editable || self.drag.as_ref().is_some_and(is_other) {
@@ -141,7 +142,7 @@ impl ModesView {
             };
             if self.drag.is_some() {
                 controls.history.begin(controls.params);
-                self.selected = mode.or(self.selected);
+                self.selected = mode.map(|mode| (mode, modes.len())).or(self.selected);
             }
         }
         if let Some(drag) = &mut self.drag {

@@ -19,8 +19,9 @@ pub(super) fn phases(table: &ModeTable) -> Vec<f32> {
 
 /// Replaces the sound's table of modes; the knobs stay where they are. Returns the loaded sound; nothing for a kit.
 pub(crate) fn replace(table: ModeTable, controls: &Controls) -> Option<Arc<Loaded>> {
-    let mut state = controls.params.state();
-    let Playable::Preset(preset) = &mut state.playable else { return None };
-    preset.patch.modes = table;
-    Some(controls.params.load(state.into()))
+    controls.params.change(|mut state| {
+        let Playable::Preset(preset) = &mut state.playable else { return None };
+        preset.patch.modes = table;
+        Some(state)
+    })
 }

@@ -5,7 +5,6 @@ pub(super) mod sources;
 
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
-use crate::editor::pages::Request;
 use crate::editor::pages::sections::{Section, knobs, sections, show_title};
 use crate::editor::routes::list::{self, View};
 use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, TITLE_HEIGHT};
@@ -41,7 +40,7 @@ impl MotionPage {
     }
 
     /// Shows the face.
-    pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, shown: &Shown, controls: &mut Controls) -> Option<Request> {
+    pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, shown: &Shown, controls: &mut Controls) -> bool {
         let palette = controls.palette;
         let (share, [least, most]) = SIDE;
         let side = rect.with_max_x(rect.left() + (share * rect.width()).clamp(least, most));
@@ -62,7 +61,7 @@ impl MotionPage {
         for section in sections(section_of(self.chosen).as_slice()) {
             self.show_section(ui, foot.shrink2(vec2(PADDING, 0.0)), section, rows, shown, controls);
         }
-        asks.then_some(Request::Manual)
+        asks
     }
 
     /// Shows the knobs of a section, and beside them its curve.

@@ -35,8 +35,6 @@ const SECTIONS: f32 = 344.0;
 /// A request of the user's.
 pub(super) enum Request {
     Manual,
-    /// Show what the sound is made of.
-    Sound,
     /// Show this message.
     Say(Said),
 }

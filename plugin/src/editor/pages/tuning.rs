@@ -1,7 +1,7 @@
 //! The page of the tuning: its scale, and the frequency of each key.
 
 use super::scales::SCALES;
-use crate::editor::controls::gestures::load;
+use crate::editor::controls::gestures::change;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint, Pick, Said};
 use crate::editor::keyboard::grid::{Cell, KeyGrid};
@@ -175,8 +175,9 @@ pub(crate) fn take(path: &Path, controls: &mut Controls) -> Said {
 /// Sets the tuning of every preset, as one undo step.
 fn set(own: Option<OwnTuning>, name: &str, controls: &mut Controls) {
     controls.history.begin(controls.params);
-    let mut state = controls.params.state();
-    state.playable.presets_mut().into_iter().for_each(|preset| preset.tuning.clone_from(&own));
-    load(state, controls.params, controls.host);
+    change(controls.params, controls.host, |mut state| {
+        state.playable.presets_mut().into_iter().for_each(|preset| preset.tuning.clone_from(&own));
+        Some(state)
+    });
     controls.history.end(name, controls.params);
 }

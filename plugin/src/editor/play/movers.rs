@@ -1,13 +1,11 @@
 //! What moves the body, as tiles: a click lets one of them act alone, its lamp adds it to the others.
 
-use crate::editor::controls::files::load;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::lamps::{Lamp, MOVERS};
 use crate::editor::theme::{GAP, Palette, RADIUS, SMALL, TEXT};
 use crate::editor::widgets::text::line;
 use egui::{Align2, Color32, Id, Painter, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use sprung::params::Param;
-use sprung::preset::Playable;
 
 /// Shows the tiles. Returns whether another exciter acts alone now.
 pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) -> bool {
@@ -58,21 +56,13 @@ pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) 
 
 /// Lets one exciter act and no other, as one step that can be undone.
 fn act_alone(mover: &Lamp, controls: &mut Controls) {
-    controls.release();
-    let mut state = controls.params.state();
-    let Playable::Preset(preset) = &mut state.playable else { return };
-    preset.patch.values = state.values;
     let is_wanted = |other: &Lamp| other.param == mover.param;
     let changed: Vec<&Lamp> = MOVERS.iter().filter(|other| is_wanted(other) != other.is_on(controls)).collect();
     if changed.is_empty() {
         return;
     }
-    for (param, value) in changed.into_iter().flat_map(|other| other.switched(controls)) {
-        preset.patch.set(param, value);
-    }
-    controls.history.begin(controls.params);
-    load(state.playable, controls.params, controls.host);
-    controls.history.end(format!("{} alone", mover.section), controls.params);
+    let values = changed.into_iter().flat_map(|other| other.switched(controls)).collect();
+    controls.set_all(format!("{} alone", mover.section), values);
 }
 
 /// A little picture of an exciter.

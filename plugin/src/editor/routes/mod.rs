@@ -5,10 +5,9 @@ pub(super) mod learn;
 pub(super) mod list;
 mod matrix;
 
-use crate::editor::controls::gestures::load;
+use crate::editor::controls::gestures;
 use crate::editor::controls::{Controls, Said, moved_in};
 use crate::loaded::positions_of;
-use crate::state::State;
 use egui::{Button, Id, Popup, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo};
 use sprung::engine::SoundingNote;
 use sprung::params::{PARAMS, Param, ParamInfo};
@@ -209,25 +208,24 @@ fn destinations(ui: &mut Ui) -> Option<Param> {
 
 /// Sets or removes a route, and optionally sets its amount. A new route never takes what a former one has left in its place.
 fn change(place: usize, route: Option<Route>, amount: Option<f32>, controls: &mut Controls) {
-    let state = controls.params.state();
-    let Playable::Preset(mut preset) = state.playable else { return };
     controls.history.begin(controls.params);
-    let patch: &mut Patch = &mut preset.patch;
-    let param = amount_param(place);
-    let amount = match (patch.routes.get(place), route) {
-        (_, None) => Some(param.info().default),
-        (None, Some(_)) => amount.or(Some(AMOUNT)),
-        (Some(_), Some(_)) => amount,
-    };
-    patch.routes.set(place, route);
-    let mut positions = state.positions;
-    if let Some(amount) = amount {
-        patch.set(param, amount);
-        positions[param as usize] = positions_of(&patch.values)[param as usize];
-    }
-    let values = patch.values;
+    gestures::change(controls.params, controls.host, |mut state| {
+        let Playable::Preset(preset) = &mut state.playable else { return None };
+        let patch: &mut Patch = &mut preset.patch;
+        let param = amount_param(place);
+        let amount = match (patch.routes.get(place), route) {
+            (_, None) => Some(param.info().default),
+            (None, Some(_)) => amount.or(Some(AMOUNT)),
+            (Some(_), Some(_)) => amount,
+        };
+        patch.routes.set(place, route);
+        if let Some(amount) = amount {
+            patch.set(param, amount);
+            state.values = patch.values;
+            state.positions[param as usize] = positions_of(&patch.values)[param as usize];
+        }
+        Some(state)
+    });
     let name = route.map_or("remove a route".to_owned(), |route| format!("route to {}", route.destination.info().name));
-    let state = State { playable: Playable::Preset(preset), values, positions, ..state };
-    load(state, controls.params, controls.host);
     controls.history.end(name, controls.params);
 }

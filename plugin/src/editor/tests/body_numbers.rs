@@ -47,6 +47,23 @@ fn pictures_of_the_page_are_as_accepted() {
     finish();
 }
 
+/// Keys go from one whole number to the next, and each is heard once.
+#[test]
+fn a_whole_number_is_moved_by_keys() {
+    let mut band = Band::new("Glass Marimba", SIZE, Theme::Dark);
+    band.stage.harness.get_by_role_and_label(Role::Tab, "Model").click();
+    band.passes(3);
+    let count = |band: &Band| band.stage.origin().body().unwrap().modes;
+    let before = count(&band);
+    band.stage.harness.get_by_label("Number of modes").focus();
+    band.passes(2);
+    band.stage.harness.key_press(Key::ArrowDown);
+    band.passes(90);
+    assert_eq!(count(&band), before - 1);
+    let strikes = band.heard.iter().filter(|touch| matches!(touch, Touch::Down { .. })).count();
+    assert_eq!(strikes, 1, "{:?}", band.heard);
+}
+
 #[test]
 fn a_number_is_dragged_heard_and_undone_as_one_step() {
     let mut band = Band::new("Glass Marimba", SIZE, Theme::Dark);

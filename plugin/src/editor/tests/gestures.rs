@@ -124,6 +124,36 @@ fn the_wheel_turns_and_a_double_click_resets() {
     assert_eq!(stage.host.calls().iter().filter(|calls| matches!(calls, Call::Begin(_))).count(), 2);
 }
 
+/// Turns of the wheel that follow each other are one step, parts of a step of a touchpad add up, and undo leaves alone what a host has
+/// moved since.
+#[test]
+fn a_run_of_the_wheel_is_one_step_and_undo_moves_no_other_knob() {
+    let mut stage = Stage::new();
+    let before = stage.params.state();
+    let knob = stage.at("Mallet speed");
+    stage.steps(&[Event::PointerMoved(knob), wheel(1.0), wheel(1.0), wheel(1.0)]);
+    let automated = &stage.params.knobs()[Param::Tilt as usize];
+    automated.turn(0.9);
+    let tilt = stage.value(Param::Tilt);
+    assert!(tilt != before.values.get(Param::Tilt));
+    stage.host.calls();
+    stage.button("Undo");
+    assert_eq!(stage.value(Param::MalletSpeed), before.values.get(Param::MalletSpeed));
+    assert_eq!(stage.value(Param::Tilt), tilt);
+    let calls = stage.host.calls();
+    assert!(is_one_gesture(&calls, "Mallet speed"), "{calls:?}");
+    stage.button("Redo");
+    assert!((stage.value(Param::MalletSpeed) - before.values.get(Param::MalletSpeed) - 3.0).abs() < 1e-3);
+    assert_eq!(stage.value(Param::Tilt), tilt);
+
+    let pulse = stage.harness.get_by_role_and_label(Role::ComboBox, "Mallet pulse").rect().center();
+    let kind = stage.value(Param::MalletPulse);
+    stage.steps(&[Event::PointerMoved(pulse), wheel(-0.4)]);
+    assert_eq!(stage.value(Param::MalletPulse), kind);
+    stage.steps(&[wheel(-0.4), wheel(-0.4)]);
+    assert_eq!(stage.value(Param::MalletPulse), kind - 1.0);
+}
+
 #[test]
 fn a_wheel_that_scrolls_a_page_turns_no_knob_until_the_pointer_rests_on_one() {
     // There the page is wider than the window.

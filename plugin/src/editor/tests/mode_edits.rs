@@ -186,7 +186,7 @@ fn a_window_that_is_closed_lets_go_of_every_key_and_knob() {
 
 #[test]
 fn a_double_clicks_key_is_let_go_when_something_is_shown_over_the_modes() {
-    for opens in ["Browse", "?"] {
+    for opens in ["Browse", "Manual: exciters"] {
         let mut band = Band::new("Marimba", SIZE, Theme::Dark);
         let place = band.free();
         for pressed in [true, false, true, false] {

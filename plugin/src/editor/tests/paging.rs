@@ -40,7 +40,7 @@ fn pictures_of_tuning_voices_and_manual_are_as_accepted() {
     }
     for (size, theme, name) in [(SIZE, Theme::Dark, "manual"), (LEAST_SIZE, Theme::Dark, "manual-least")] {
         let mut stage = stage("Marimba", size, 1.0, theme);
-        stage.harness.get_by_role_and_label(Role::Tab, "?").click();
+        stage.harness.get_by_label_contains("Manual: ").click();
         stage.harness.run_steps(3);
         compare(name, &mut stage.harness);
     }
@@ -118,7 +118,7 @@ fn the_manual_opens_at_the_page_that_matters_and_escape_closes_it() {
         let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
         stage.harness.get_by_role_and_label(Role::Tab, tab).click();
         stage.harness.run_steps(3);
-        stage.harness.get_by_role_and_label(Role::Tab, "?").click();
+        stage.harness.get_by_label_contains("Manual: ").click();
         stage.harness.run_steps(3);
         assert!(stage.harness.query_by_role_and_label(Role::Label, title).is_some(), "{title}");
         stage.harness.get_by_label("Manual: recipes").click();
@@ -136,7 +136,7 @@ fn every_page_of_the_manual_can_be_shown() {
     // High enough for the whole list of pages.
     for size in [[1100, 900], [640, 900]] {
         let mut stage = stage("Marimba", size, 1.0, Theme::Dark);
-        stage.harness.get_by_role_and_label(Role::Tab, "?").click();
+        stage.harness.get_by_label_contains("Manual: ").click();
         stage.harness.run_steps(3);
         // A letter that no font has would panic here.
         for (name, _) in sprung::internals::text::PAGES {
@@ -152,7 +152,7 @@ fn every_page_of_the_manual_can_be_shown() {
 #[test]
 fn the_manual_is_searched_and_opened_where_the_words_are() {
     let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
-    stage.harness.get_by_role_and_label(Role::Tab, "?").click();
+    stage.harness.get_by_label_contains("Manual: ").click();
     stage.harness.run_steps(3);
     assert!(stage.paints("Begin here") && stage.paints("Playing"), "the contents have groups");
     stage.harness.get_by_label("Search the manual").focus();

@@ -54,10 +54,21 @@ pub(super) fn stage(sound: &str, size: [u32; 2], scale: f32, theme: Theme) -> St
 
 /// A window with a factory sound.
 pub(super) fn facing(face: Face, sound: &str, size: [u32; 2], scale: f32, theme: Theme) -> Stage {
-    let (params, host) = (Arc::new(SprungParams::default()), Arc::new(FakeHost::default()));
+    facing_on(SprungParams::default(), face, sound, (size, scale), theme)
+}
+
+/// The window of an instrument or effect with a factory sound.
+pub(super) fn facing_on(
+    params: SprungParams,
+    face: Face,
+    sound: &str,
+    (size, scale): ([u32; 2], f32),
+    theme: Theme,
+) -> Stage {
+    let (params, host) = (Arc::new(params), Arc::new(FakeHost::default()));
     let State { seed, mut view, .. } = State::default();
     view.theme = theme;
-    params.load(State::new(Playable::find(sound).unwrap(), seed, view).into());
+    params.load(params.suited(State::new(Playable::find(sound).unwrap(), seed, view)).into());
     let (folder, past) = (tempfile::tempdir().unwrap(), Past::default());
     let harness = open(&params, &host, folder.path(), &past, face, (size, scale));
     Stage { params, host, harness, folder, past }
@@ -252,7 +263,7 @@ fn pictures_are_small() {
 #[ignore = "takes half a minute"]
 fn pictures_of_browser_and_manual_in_every_theme_are_as_accepted() {
     for theme in Theme::ALL {
-        for (page, opens) in [("browser", "Browse"), ("manual", "?")] {
+        for (page, opens) in [("browser", "Browse"), ("manual", "Manual: exciters")] {
             let shown = |size, scale| {
                 let mut stage = stage("Marimba", size, scale, theme);
                 stage.harness.get_by_label(opens).click();

@@ -1,11 +1,12 @@
 //! The page that a window opens with.
 
-use super::pictures::{compare, compare_exactly, compare_small, facing, finish};
+use super::pictures::{compare, compare_exactly, compare_small, facing, facing_on, finish};
 use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::window::Face;
 use crate::link::Touch;
 use crate::loaded::Loaded;
+use crate::params::SprungParams;
 use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, PointerButton, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -165,6 +166,29 @@ fn an_exciter_acts_alone_and_its_lamp_adds_it() {
     band.undo();
     band.undo();
     assert!(band.value(Param::BowLevel) == silent && band.value(Param::MalletLevel) > silent);
+}
+
+/// Noise has two levels, which its lamp takes down together.
+#[test]
+fn a_lamp_is_one_step() {
+    let mut band = playing("Accordion");
+    let before = band.stage.params.state();
+    let levels = [Param::NoiseLevel, Param::NoiseHeld];
+    assert!(levels.iter().all(|level| before.values.get(*level) > level.info().min));
+    band.click(Role::CheckBox, "Noise");
+    assert!(levels.iter().all(|level| band.value(*level) == level.info().min));
+    band.undo();
+    assert_eq!(band.stage.params.state(), before);
+}
+
+/// In the effect, what the user switches on stays on.
+#[test]
+fn a_mallet_may_strike_what_the_incoming_sound_drives() {
+    let mut band = Band::of(facing_on(SprungParams::of_effect(), Face::Play, "Marimba", (SIZE, 1.0), Theme::Dark));
+    let silent = Param::MalletLevel.info().min;
+    assert!(band.value(Param::MalletLevel) == silent && band.value(Param::InputLevel) == 0.0);
+    band.click(Role::Button, "Mallet alone");
+    assert!(band.value(Param::MalletLevel) > silent && band.value(Param::InputLevel) == Param::InputLevel.info().min);
 }
 
 #[test]

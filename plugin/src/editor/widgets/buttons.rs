@@ -44,6 +44,7 @@ pub(crate) fn button(ui: &Ui, rect: Rect, text: &str, name: &str, look: Look, pa
 /// The tab that opens the manual at a topic. Returns whether it was clicked.
 pub(crate) fn help_tab(ui: &Ui, rect: Rect, topic: &str, controls: &mut Controls) -> bool {
     let response = tab(ui, rect, "?", false, controls.palette);
+    response.widget_info(|| WidgetInfo::selected(Role::Tab, true, false, format!("Manual: {topic}")));
     if response.hovered() {
         *controls.hint = Hint::new("Manual", format!("What this page does: {topic}"));
     }

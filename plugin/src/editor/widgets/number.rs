@@ -30,10 +30,12 @@ impl Number<'_> {
         line(ui.painter(), name, Align2::LEFT_CENTER, self.title, SMALL, controls.palette.muted);
         let (written, read, [min, max]) = (self.written, self.read, self.range);
         let mut value = self.value;
+        // Without the mouse, a key or a screen reader asks for the next number.
+        let is_step = self.is_whole && !ui.input(|input| input.pointer.any_down());
         let widget = DragValue::new(&mut value)
             .range(min..=max)
             .clamp_existing_to_range(false)
-            .speed(self.speed)
+            .speed(if is_step { 1.0 } else { self.speed })
             .update_while_editing(false)
             .custom_formatter(move |value, _| written(value))
             .custom_parser(read);

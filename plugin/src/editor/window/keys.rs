@@ -28,11 +28,11 @@ pub(super) fn asked(is_list: bool, zoom: u32, is_typing: bool, ui: &Ui) -> Optio
     });
     let request = found.map(|(_, _, request)| request)?;
     let is_taken = match request {
+        Request::Zoom(_) => false,
         // A list of sounds that is open is not closed by it, and a path begins with it.
-        Request::Browse => is_list,
-        // What is being dragged is no step yet: the one before would go from under it.
-        Request::Undo | Request::Redo => ui.input(|input| input.pointer.any_down()),
-        _ => false,
+        Request::Browse if is_list => true,
+        // What is being dragged is no step yet: the one before, or its page, would go from under it.
+        _ => ui.input(|input| input.pointer.any_down()),
     };
     (!is_taken).then_some(request)
 }

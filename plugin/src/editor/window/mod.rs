@@ -25,7 +25,7 @@ use crate::editor::host::focus::Focus;
 use crate::editor::keyboard::computer::ComputerKeyboard;
 use crate::editor::keyboard::piano::Piano;
 use crate::editor::keyboard::wheels::Wheels;
-use crate::editor::kit::KitPage;
+use crate::editor::kit::{self, KitPage};
 use crate::editor::manual::Manual;
 use crate::editor::modes::ModesView;
 use crate::editor::motion::MotionPage;
@@ -35,6 +35,7 @@ use crate::editor::play::PlayPage;
 use crate::editor::routes::{carry, learn};
 use crate::editor::theme::layout::Layout;
 use crate::editor::theme::{Theme, install_fonts};
+use crate::link::joined;
 use crate::lock::lock;
 use crate::params::SprungParams;
 use egui::{Event, Key, Ui};
@@ -276,6 +277,9 @@ impl Window {
         if seen != Some(Face::Motion) {
             self.motion.leave();
         }
+        if seen.is_none() {
+            controls.interaction.typing = None;
+        }
         let (mut reads, mut picked) = (false, Vec::new());
         match self.over {
             Some(Over::Browser) => {
@@ -317,12 +321,12 @@ impl Window {
                 }
             }
             None if self.face == Face::Motion => {
-                reads = self.motion.show(ui, layout.page(), &self.shown, &mut controls).is_some();
+                reads = self.motion.show(ui, layout.page(), &self.shown, &mut controls);
             }
             None if self.face == Face::Kit => {
                 let (page, others) = (layout.page(), (down, &mut self.browser));
                 match self.kit.show(ui, page, &mut self.shown, others, &mut controls) {
-                    Some(pages::Request::Sound) => self.face = Face::Sound,
+                    Some(kit::Request::Edit) => self.face = Face::Sound,
                     request => reads = request.is_some(),
                 }
             }
@@ -332,7 +336,7 @@ impl Window {
                 match self.pages.show(ui, &layout, &self.shown, (down, voices), &mut controls) {
                     Some(pages::Request::Manual) => reads = true,
                     Some(pages::Request::Say(message)) => self.news = Some(message),
-                    Some(pages::Request::Sound) | None => {}
+                    None => {}
                 }
             }
         }
@@ -352,12 +356,17 @@ impl Window {
         }
         picked.extend(drops::dropped(ui));
         let (recordings, files): (Vec<_>, Vec<_>) = picked.into_iter().partition(|path| drops::is_recording(path));
+        let mut said = Vec::new();
         for path in files {
-            self.news = Some(drops::take(&path, self.browser.library(), &mut controls));
+            said.push(drops::take(&path, self.browser.library(), &mut controls));
             self.browser.forget();
         }
         if !recordings.is_empty() {
-            self.news = Some(self.fitting.begin(recordings));
+            said.push(self.fitting.begin(recordings));
+        }
+        if !said.is_empty() {
+            said.extend(controls.history.take_lost().map(Ok));
+            self.news = Some(joined(said).unwrap_or(Ok(String::new())));
         }
         if let Some(message) = self.fitting.show(ui, layout.modes, &mut controls) {
             self.news = Some(message);

@@ -18,7 +18,9 @@ impl Window {
     /// Loads the factory sound at this distance in the list.
     fn step(&mut self, places: isize, host: &GuiContext) {
         let (all, name) = (Preset::factory(), self.params.name());
-        let place = all.iter().position(|preset| preset.name == name).unwrap_or(0) as isize + places;
+        // From a sound that is not in the list, the next is its first and the one before its last.
+        let place = all.iter().position(|preset| preset.name == name).map(|place| place as isize);
+        let place = place.unwrap_or(if places > 0 { -1 } else { 0 }) + places;
         let preset = all[place.rem_euclid(all.len() as isize) as usize].clone();
         self.history.load(Playable::Preset(preset), &self.params, host);
     }

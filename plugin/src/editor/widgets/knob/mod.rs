@@ -227,8 +227,7 @@ fn step(info: &'static ParamInfo, steps: f64, controls: &mut Controls) {
         _ => (position + STEP * steps).clamp(0.0, 1.0),
     };
     if wanted as f32 != position as f32 {
-        controls.turn(info, wanted);
-        controls.release();
+        controls.nudge(info, wanted);
     }
 }
 
@@ -252,8 +251,19 @@ pub(super) fn wheel(ui: &Ui, response: &Response, info: &'static ParamInfo, cont
         });
         (steps, input.modifiers.shift)
     });
-    if steps != 0.0 {
-        step(info, if fine { steps * FINE } else { steps }, controls);
+    if steps == 0.0 {
+        return;
+    }
+    if !matches!(info.unit, Unit::Count | Unit::Choice) {
+        return step(info, if fine { steps * FINE } else { steps }, controls);
+    }
+    // A touchpad sends parts of a step.
+    let index = info.param as usize;
+    let before = controls.interaction.scrolled.filter(|(knob, _)| *knob == index).map_or(0.0, |(_, part)| part);
+    let sum = before + steps;
+    controls.interaction.scrolled = Some((index, sum.fract()));
+    if sum.trunc() != 0.0 {
+        step(info, sum.trunc(), controls);
     }
 }
 
