@@ -185,7 +185,6 @@ fn a_blown_note_lasts_while_it_is_held_and_then_ends() {
     }
 }
 
-/// Breath, pressure and the tongue are heard; a slur goes on with the air in the tube.
 /// An event in every frame changes nothing of how fast the pressure comes.
 #[test]
 fn breath_comes_as_fast_under_many_events() {
@@ -211,6 +210,7 @@ fn a_soft_note_speaks_after_a_loud_one_on_the_same_key() {
     assert!((after / alone - 1.0).abs() < 0.2, "{after} {alone}");
 }
 
+/// Breath, pressure and the tongue are heard; a slur goes on with the air in the tube.
 #[test]
 fn gestures_are_heard() {
     let patch = horn().with(Param::BreathPressure, 20.0).with_route(0, Source::Breath, Param::BreathPressure, 25.0);

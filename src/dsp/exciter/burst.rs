@@ -81,11 +81,6 @@ impl BurstSetup {
         let cut_off = f64::from(self.hits.max(1) - 1) * self.squares(self.spacing);
         (cut_off + self.squares(u32::MAX >> 1)) / 3.0
     }
-
-    /// The hit to which a frame belongs.
-    fn hit(&self, frame: u32) -> u32 {
-        if self.hits > 1 { frame.checked_div(self.spacing).unwrap_or(self.hits).min(self.hits - 1) } else { 0 }
-    }
 }
 
 /// A filter of noise: an over-damped mass that follows it. Real-time safe.
@@ -153,16 +148,6 @@ impl Burst {
         self.frames
     }
 
-    /// The share of its energy that is still to come at a frame.
-    pub(super) fn left(&self, frame: u32) -> f64 {
-        if frame >= self.frames {
-            return 0.0;
-        }
-        let (setup, hit) = (&self.setup, self.setup.hit(frame));
-        let passed = f64::from(hit) * setup.squares(setup.spacing) + setup.squares(frame - hit * setup.spacing);
-        (1.0 - passed / (3.0 * setup.energy())).clamp(0.0, 1.0)
-    }
-
     /// Adds the frames from `frame` on. Must be called with consecutive frames.
     pub(super) fn add_to(&mut self, frame: u32, force: &mut [f32]) {
         let left = self.frames.saturating_sub(frame) as usize;
@@ -174,8 +159,9 @@ impl Burst {
 
     /// The envelope at a frame, including the scale.
     fn envelope(&mut self, frame: u32) -> f32 {
-        let BurstSetup { frames, attack, decay, spacing, .. } = self.setup;
-        let frame = frame - self.setup.hit(frame) * spacing;
+        let BurstSetup { frames, attack, decay, hits, spacing, .. } = self.setup;
+        let hit = if hits > 1 { frame.checked_div(spacing).unwrap_or(hits).min(hits - 1) } else { 0 };
+        let frame = frame - hit * spacing;
         if frame < attack {
             return (frame as f32 + 0.5) / attack as f32 * self.scale;
         }

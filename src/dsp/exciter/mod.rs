@@ -144,9 +144,9 @@ impl Exciter {
         (self.next + OVERLAPPING - 1) % OVERLAPPING
     }
 
-    /// Whether any pulse of the strike that was started last is still to come, and which share of the energy of its noise.
-    pub(crate) fn coming(&self) -> (bool, f64) {
-        self.blows[self.newest()].coming()
+    /// Whether any of the pulses of the strike that was started last is still to come.
+    pub(crate) fn is_pushed(&self) -> bool {
+        self.blows[self.newest()].is_pushed()
     }
 
     /// Whether any force of the strike in this slot is still to come.
@@ -199,8 +199,8 @@ impl Blow {
         self.push.frames().max(self.pull.frames()).max(self.noise.frames()).saturating_sub(self.frame)
     }
 
-    fn coming(&self) -> (bool, f64) {
-        (self.frame < self.push.frames().max(self.pull.frames()), self.noise.left(self.frame))
+    fn is_pushed(&self) -> bool {
+        self.frame < self.push.frames().max(self.pull.frames())
     }
 
     fn add_to(&mut self, frames: usize, drive: &mut Drive) {

@@ -46,7 +46,8 @@ pub(super) struct Blowing {
     pressure: Line,
     /// The pressure at the next control tick.
     reached: f64,
-    /// Whether the modes have their contacts, and whether some that swing too far are left out until they do not.
+    /// Whether the modes have their contacts; and whether some are left out, so that all are placed again, by the knobs of then, until
+    /// none is.
     is_placed: bool,
     leaves_out: bool,
     has_blown: bool,

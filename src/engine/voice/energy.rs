@@ -66,7 +66,7 @@ impl Energy {
         }
     }
 
-    /// The energy now, or, if it is greater, what the last strike has still to bring (`coming`).
+    /// The energy now, or, if it is greater, what the pulses of the last strike will have brought (`coming`).
     pub(super) fn now(&self, coming: f64) -> f64 {
         self.measured.max(coming)
     }
@@ -102,9 +102,9 @@ impl Energy {
         (sqrt(self.measured) + sqrt(self.pending.max(0.0))) * sqrt(bank.len() as f64) * gain
     }
 
-    /// How loud the voice is, for voice stealing.
-    pub(super) fn rank(&self, coming: f64, fader: &Fader) -> f64 {
-        self.now(coming) * fader.remaining()
+    /// How loud the voice is, or will be by what acts on it, for voice stealing; at least `least`.
+    pub(super) fn rank(&self, least: f64, fader: &Fader) -> f64 {
+        self.measured.max(self.pending).max(least) * fader.remaining()
     }
 
     /// Whether the voice will be silent until it is struck again.

@@ -330,8 +330,8 @@ impl SynthVoice {
 
     /// Whether energy moves to higher modes.
     fn blooms(&self) -> bool {
-        let energy = || self.energy.now(self.strike.coming()) / self.strike.full_energy();
-        !self.strike.blowing.has_blown() && Bloom::acts(&self.controls, energy())
+        let energy = self.energy.now(self.strike.coming()) / self.strike.full_energy();
+        !self.strike.blowing.has_blown() && Bloom::acts(&self.controls, energy)
     }
 
     /// Frames until the voice is over if no event comes, `to_tick` frames before the next control tick: see

@@ -196,8 +196,8 @@ impl Voice for SynthVoice {
 
     fn energy(&self) -> f64 {
         let swings_in = self.is_played() && self.clock.seconds(self.clock.age) < SWINGS_IN;
-        let least = if swings_in { 1.0 } else { 0.0 };
-        self.energy.rank(self.strike.coming().max(least), &self.fader)
+        let least = if swings_in { 1.0 / self.unison.count as f64 } else { 0.0 };
+        self.energy.rank(least, &self.fader)
     }
 
     fn is_over(&self) -> bool {

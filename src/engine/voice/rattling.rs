@@ -17,8 +17,8 @@ const HEARD_ONLY: f64 = 0.01;
 /// A point that a full strike gives less speed than this does not move.
 const LEAST_SPEED: f64 = 1e-12;
 
-/// The rattle feels no mode that swings further than after so many full strikes. That may be one that earlier strikes have moved when it
-/// was heard louder: its swing would be thrown into modes that are heard louder now, and to and fro without end.
+/// The rattle feels no mode that swings further than so many full strikes at its antinode would make it swing now. Such a mode was moved
+/// when it was heard louder: its swing would be thrown into modes that are heard louder now, and to and fro without end.
 const MOST_FELT: f64 = 4.0;
 
 /// Below this share of a full strike's energy, nothing rattles any more: −80 dB.
@@ -124,7 +124,7 @@ impl Rattling {
         swing_of.iter_mut().zip(bank.masses()).for_each(|(swing, (_, energy))| *swing = sqrt(energy.into()));
         let touch = |m: usize| {
             let weight = weights[m] * struck(m).max(HEARD_ONLY);
-            let is_felt = swing_of[m] <= MOST_FELT * full * fabs(pushes[m]);
+            let is_felt = swing_of[m] <= MOST_FELT * full * fabs(levels[m]);
             if is_felt { [pushes[m], weight] } else { [0.0; 2] }
         };
         let compliance = bank.set_touched(1, |m, _| touch(m)).iter().sum();

@@ -123,13 +123,10 @@ impl Strike {
         self.key
     }
 
-    /// The energy that the last strike has still to bring: that of pulses until they are over, that of noise in the measure in which
-    /// it comes.
+    /// The energy that the pulses of the last strike will have brought, until they are over. That of noise counts as it comes.
     pub(super) fn coming(&self) -> f64 {
-        let (has_pulses, noise) = self.exciter.coming();
-        let has_pulses = has_pulses || self.hammering.is_on();
-        let pulses = if has_pulses { self.energy - self.noise_energy } else { 0.0 };
-        pulses + noise * self.noise_energy
+        let is_pushed = self.exciter.is_pushed() || self.hammering.is_on();
+        if is_pushed { self.energy - self.noise_energy } else { 0.0 }
     }
 
     /// Whether a hammer, a bow or breath acts on the modes by how they move.

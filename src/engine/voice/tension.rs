@@ -6,8 +6,8 @@
 //!
 //! The rise follows the energy of the whole voice, which is slow against the vibration. So it is one more summand of
 //! the sweep: `6 log₂(1 + (2^(t/6) − 1) E)` semitones, where `t` is the parameter and `E` the energy in units of a full
-//! strike (the same strike at full velocity, without routes). `E` is measured at every control tick; while a strike is
-//! under way, the energy that it will bring counts. Slow changes are followed exactly, sudden ones in about 3 ms. Since
+//! strike (the same strike at full velocity, without routes). `E` is measured at every control tick; while the pulse of a
+//! mallet or a pluck is under way, all that it will bring counts, and noise counts as it comes. Slow changes are followed exactly, sudden ones in about 3 ms. Since
 //! movements of pitch cannot add energy, tension is stable. `tests/engine/in_motion.rs` measures the pitch within a cent of
 //! the law.
 
