@@ -64,7 +64,7 @@ pub(crate) struct SprungParams {
     slot: Slot,
     link: Link,
     extent: Extent,
-    /// Whether sounds are loaded as the effect plays them: [`State::driven`].
+    /// Whether a sound that is chosen is driven by incoming sound: [`State::driven`].
     is_effect: bool,
     /// Whether the host saves or loads a preset, which has no window.
     is_for_preset: AtomicBool,

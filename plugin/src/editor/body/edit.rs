@@ -117,7 +117,7 @@ impl BodyEdit {
     /// Makes the sound a last time and ends the undo step. The error is that of [`BodyEdit::write`].
     pub(super) fn end(mut self, controls: &mut Controls) -> Result<(), String> {
         let result = self.write(f64::INFINITY, controls);
-        controls.history.end(self.what, controls.params);
+        controls.history.end_of(&[Param::Decay as usize], self.what, controls.params);
         let position = controls.position(Param::Decay.info());
         if position.to_bits() == self.position.to_bits() {
             touch(controls.params, controls.host);

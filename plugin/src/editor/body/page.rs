@@ -195,7 +195,7 @@ impl BodyPage {
             return None;
         }
         let rows = ((rect.height() / CELL[1]) as usize).max(1);
-        let (mut is_held, mut is_dragged, mut has_changed) = (false, false, false);
+        let (mut is_held, mut is_dragged) = (false, false);
         let mut inner = ui.new_child(UiBuilder::new().id_salt("body numbers").max_rect(rect));
         ScrollArea::horizontal().auto_shrink(false).show(&mut inner, |ui| {
             let columns = numbers.len().div_ceil(rows) as f32;
@@ -206,7 +206,6 @@ impl BodyPage {
                 let (response, value) = show(ui, Rect::from_min_size(corner, cell), number, controls);
                 is_dragged |= response.dragged();
                 is_held |= is_dragged || response.has_focus();
-                has_changed |= response.changed();
                 if response.changed() && value != number.value {
                     let mut changed = self.edit.as_ref().map_or(origin, BodyEdit::origin).clone();
                     self.part.set(&mut changed, number.name, value);
@@ -218,11 +217,12 @@ impl BodyPage {
         });
         let edit = self.edit.as_mut()?;
         let now = ui.input(|input| input.time);
+        let was_due = edit.is_due();
         let message = edit.write(now, controls).err();
         let (home, link) = (shown.guide().home, controls.params.link());
         if is_dragged {
             self.audition.repeat(home, now, link);
-        } else if has_changed {
+        } else if was_due && !edit.is_due() {
             self.audition.strike(home, VELOCITY, now, link);
         }
         if is_held {

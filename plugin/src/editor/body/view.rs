@@ -154,7 +154,7 @@ impl BodyView {
             if shape.origin == Origin::Table {
                 controls.release();
             } else {
-                controls.history.end(describe(drag_point, shape), controls.params);
+                controls.history.end_of(&[], describe(drag_point, shape), controls.params);
                 touch(controls.params, controls.host);
             }
             controls.history.cancel();

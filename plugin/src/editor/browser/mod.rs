@@ -41,6 +41,8 @@ pub(super) enum Aim {
 pub(super) struct Browser {
     /// Read when the browser is first opened.
     sounds: Option<Sounds>,
+    /// What was said last of files that cannot be read.
+    told: Option<String>,
     library: Option<Library>,
     category: Category,
     words: String,
@@ -58,6 +60,7 @@ impl Browser {
     pub(super) fn new(library: Option<Library>) -> Self {
         Self {
             sounds: None,
+            told: None,
             library,
             category: Category::All,
             words: String::new(),
@@ -102,7 +105,6 @@ impl Browser {
     /// Shows the browser. Returns a message, and whether the user is done here.
     pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, controls: &mut Controls) -> Option<(Said, bool)> {
         let palette = controls.palette;
-        let are_new = self.sounds.is_none();
         let mut sounds = self.sounds.take().unwrap_or_else(|| Sounds::read(self.library.clone()));
         palette.paint_panel(ui.painter(), rect);
         let inner = rect.shrink(PADDING);
@@ -185,8 +187,10 @@ impl Browser {
         }
         let message = compared.map(Err).or(message);
         let is_stale = outcome.as_ref().is_some_and(|outcome| outcome.is_stale);
-        let broken = sounds.broken.first().filter(|_| are_new);
-        let broken = broken.map(|first| format!("{} of your files cannot be read: {first}", sounds.broken.len()));
+        let broken =
+            sounds.broken.first().map(|first| format!("{} of your files cannot be read: {first}", sounds.broken.len()));
+        let is_told = std::mem::replace(&mut self.told, broken.clone()) == broken;
+        let broken = broken.filter(|_| !is_told);
         self.sounds = (!is_stale).then_some(sounds);
         match outcome {
             Some(Outcome { message, is_done, compares: false, .. }) => Some((message, is_done)),

@@ -70,7 +70,7 @@ impl History {
 
     /// Like [`History::end_of`], after a turn by wheel or key, which goes on with one just before.
     pub(crate) fn end_of_turn(&mut self, index: usize, name: String, params: &SprungParams) {
-        let before = self.turned.replace((index, Instant::now()));
+        let before = self.turned.take();
         let goes_on = before.is_some_and(|(knob, then)| knob == index && then.elapsed() < PAUSE);
         match self.undo.last_mut().filter(|step| goes_on && step.moved == [index]) {
             Some(step) => {
@@ -79,6 +79,7 @@ impl History {
             }
             None => self.end_of(&[index], name, params),
         }
+        self.turned = Some((index, Instant::now()));
     }
 
     /// Loads a sound as one step.
@@ -129,7 +130,7 @@ impl History {
             return;
         }
         self.undo.iter_mut().chain(&mut self.redo).for_each(|step| step.is_changed = true);
-        self.is_changed = false;
+        (self.is_changed, self.turned) = (false, None);
     }
 
     /// Whether the user has changed the sound, or the kit whose pad is edited, since it was loaded or saved.
@@ -154,9 +155,12 @@ impl History {
         let after = params.state();
         let has_moved = |index: &usize| state.positions[*index].to_bits() != after.positions[*index].to_bits();
         let moved: Vec<usize> = (0..PARAM_COUNT).filter(|index| may_move(*index) && has_moved(index)).collect();
-        if moved.is_empty() && state.values == after.values && same_but_for_knobs(&state, &after) {
+        let value = |state: &State, index: usize| state.values.get(PARAMS[index].param);
+        let is_same = |index: usize| !may_move(index) || value(&state, index) == value(&after, index);
+        if moved.is_empty() && (0..PARAM_COUNT).all(is_same) && same_but_for_knobs(&state, &after) {
             return;
         }
+        self.turned = None;
         let is_changed = std::mem::replace(&mut self.is_changed, is_changed);
         self.undo.push(Step { name, state, moved, swaps, is_changed });
         self.redo.clear();
@@ -191,11 +195,11 @@ impl History {
 fn go([from, to]: [&mut Vec<Step>; 2], is_changed: &mut bool, params: &SprungParams, host: &GuiContext) -> bool {
     let Some(Step { name, mut state, moved, swaps, is_changed: then }) = from.pop() else { return false };
     let now = params.state();
-    if same_but_for_knobs(&state, &now) {
-        for index in (0..PARAM_COUNT).filter(|index| !moved.contains(index)) {
-            state.positions[index] = now.positions[index];
-            state.values.set(PARAMS[index].param, now.values.get(PARAMS[index].param));
-        }
+    let has_moved = |index: &usize| state.positions[*index].to_bits() != now.positions[*index].to_bits();
+    let by_others: Vec<usize> = (0..PARAM_COUNT).filter(|index| !moved.contains(index) && has_moved(index)).collect();
+    for index in by_others {
+        state.positions[index] = now.positions[index];
+        state.values.set(PARAMS[index].param, now.values.get(PARAMS[index].param));
     }
     to.push(Step { name, state: now, moved, swaps, is_changed: std::mem::replace(is_changed, then) });
     restore(state, params, host);

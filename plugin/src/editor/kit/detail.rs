@@ -196,7 +196,7 @@ impl Detail {
 
     fn leave_number(&mut self, controls: &mut Controls) {
         if let Some((_, what)) = self.turning.take() {
-            controls.history.end(what, controls.params);
+            controls.history.end_of(&[], what, controls.params);
             touch(controls.params, controls.host);
         }
     }

@@ -7,7 +7,7 @@ mod pads;
 mod sounds;
 
 use crate::editor::browser::Browser;
-use crate::editor::controls::files::load;
+use crate::editor::controls::files::remake;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
@@ -247,7 +247,7 @@ impl KitPage {
         {
             self.release(controls.params.link());
             controls.history.begin(controls.params);
-            load(Playable::Kit(edit::kit_of(preset)), controls.params, controls.host);
+            remake(Playable::Kit(edit::kit_of(preset)), controls.params, controls.host);
             controls.history.end("a kit of this sound", controls.params);
             self.is_made = true;
             return None;

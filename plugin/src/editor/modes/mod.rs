@@ -162,7 +162,7 @@ impl ModesView {
             ui.ctx().request_repaint();
             if is_over {
                 self.audition.release(controls.params.link());
-                controls.history.end(drag.name(), controls.params);
+                controls.history.end_of(&[], drag.name(), controls.params);
                 touch(controls.params, controls.host);
                 self.drag = None;
             }
@@ -204,7 +204,7 @@ impl ModesView {
         self.selected = None;
         controls.history.begin(controls.params);
         replace(ModeTable::new(&modes).with_phases(&phases), controls);
-        controls.history.end(name, controls.params);
+        controls.history.end_of(&[], name, controls.params);
         touch(controls.params, controls.host);
         true
     }

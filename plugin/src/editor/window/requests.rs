@@ -4,7 +4,7 @@ use super::header::{Face, Request};
 use super::variation::{Variation, VariationRequest};
 use super::{Over, Window, topic};
 use crate::editor::browser::Aim;
-use crate::editor::controls::files::load;
+use crate::editor::controls::files::remake;
 use crate::editor::controls::history::History;
 use crate::editor::host::extent;
 use crate::editor::kit::edit::put_back;
@@ -36,7 +36,7 @@ impl Window {
             Some(varied) => {
                 self.news = Some(Ok(String::new()));
                 self.history.begin(&self.params);
-                load(Playable::Preset(varied), &self.params, host);
+                remake(Playable::Preset(varied), &self.params, host);
                 self.history.end(variation.name(), &self.params);
             }
             None => self.news = Some(Err("every variation that was tried is silent: unlock more sections".to_owned())),
