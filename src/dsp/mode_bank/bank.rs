@@ -24,8 +24,8 @@ const LEAST_PUSH: f64 = 1e-9;
 /// A bank of modes, as a structure of arrays. Real-time safe, except for the first [`ModeBank::new`], which detects the
 /// CPU.
 ///
-/// For any sequence of calls, the amplitude of a mode never exceeds the sum of `force · gain` over all strikes, plus the
-/// amplitudes of all nudges. Pitch, damping and their changes can only reduce it.
+/// Without a player, for any sequence of calls, the amplitude of a mode never exceeds the sum of `force · gain` over all strikes, plus
+/// the amplitudes of all nudges. Pitch, damping and their changes can only reduce it. What a player brings is bounded in other norms.
 ///
 /// Modes that have rung freely at one pitch for a few control ticks are rendered one whole tick at a time, with tables.
 /// Otherwise they are stepped. The choice depends on the modes and on the calls, never on the CPU or on block sizes.
