@@ -153,8 +153,7 @@ impl History {
     ) {
         let Some(state) = self.open.take() else { return };
         let after = params.state();
-        let has_moved = |index: &usize| state.positions[*index].to_bits() != after.positions[*index].to_bits();
-        let moved: Vec<usize> = (0..PARAM_COUNT).filter(|index| may_move(*index) && has_moved(index)).collect();
+        let moved: Vec<usize> = moved_between(&state, &after).filter(|index| may_move(*index)).collect();
         let value = |state: &State, index: usize| state.values.get(PARAMS[index].param);
         let is_same = |index: usize| !may_move(index) || value(&state, index) == value(&after, index);
         if moved.is_empty() && (0..PARAM_COUNT).all(is_same) && same_but_for_knobs(&state, &after) {
@@ -195,8 +194,7 @@ impl History {
 fn go([from, to]: [&mut Vec<Step>; 2], is_changed: &mut bool, params: &SprungParams, host: &GuiContext) -> bool {
     let Some(Step { name, mut state, moved, swaps, is_changed: then }) = from.pop() else { return false };
     let now = params.state();
-    let has_moved = |index: &usize| state.positions[*index].to_bits() != now.positions[*index].to_bits();
-    let by_others: Vec<usize> = (0..PARAM_COUNT).filter(|index| !moved.contains(index) && has_moved(index)).collect();
+    let by_others: Vec<usize> = moved_between(&state, &now).filter(|index| !moved.contains(index)).collect();
     for index in by_others {
         state.positions[index] = now.positions[index];
         state.values.set(PARAMS[index].param, now.values.get(PARAMS[index].param));
@@ -213,10 +211,8 @@ pub(crate) fn restore(mut state: State, params: &SprungParams, host: &GuiContext
     if same_but_for_knobs(&state, &now) {
         // Sounding notes follow a moved knob; they would not follow if the sound were loaded again.
         let mut gestures = Gestures::default();
-        for index in 0..PARAM_COUNT {
-            if state.positions[index].to_bits() != now.positions[index].to_bits() {
-                gestures.set(params, host, index, state.positions[index]);
-            }
+        for index in moved_between(&state, &now) {
+            gestures.set(params, host, index, state.positions[index]);
         }
         // A loaded value may lie between the positions of a knob, so that setting the position does not restore it.
         if params.state().values == state.values {
@@ -224,6 +220,12 @@ pub(crate) fn restore(mut state: State, params: &SprungParams, host: &GuiContext
         }
     }
     load(state, params, host);
+}
+
+/// The knobs that are elsewhere in the one state than in the other.
+fn moved_between(one: &State, other: &State) -> impl Iterator<Item = usize> {
+    let pairs = one.positions.iter().zip(&other.positions);
+    pairs.enumerate().filter(|(_, (one, other))| one.to_bits() != other.to_bits()).map(|(index, _)| index)
 }
 
 /// Whether two states have the same sound and the same name.
