@@ -21,12 +21,12 @@ pub(crate) struct Knobs {
 }
 
 impl Knobs {
-    /// All knobs at the values that `value` gives, moved by `offsets` in knob travel, without ramps.
+    /// All knobs at the values that `value` gives, which knobs can take, moved by `offsets` in knob travel, without ramps.
     pub(crate) fn new(value: impl Fn(Param) -> f32, offsets: &[f32; PARAM_COUNT]) -> Self {
         let knobs = std::array::from_fn(|index| {
-            let param = PARAMS[index].param;
-            let value = param.info().clamp(value(param));
-            Knob { value, played: Ramp::at_rest(played(param, value, offsets[index])) }
+            let info = &PARAMS[index];
+            let value = value(info.param);
+            Knob { value, played: Ramp::at_rest(info.moved(value, offsets[index])) }
         });
         Self { knobs, moving: 0 }
     }
@@ -36,7 +36,7 @@ impl Knobs {
     pub(crate) fn set(&mut self, param: Param, value: f32, offset: f32, sample_rate: f64) -> bool {
         let (info, knob) = (param.info(), &mut self.knobs[param as usize]);
         knob.value = info.clamp(value);
-        let (target, frames) = (played(param, knob.value, offset), info.smoothing_frames(sample_rate));
+        let (target, frames) = (info.moved(knob.value, offset), info.smoothing_frames(sample_rate));
         let is_new = knob.played.after(u32::MAX) != target;
         if is_new {
             knob.played.set(target, frames.unwrap_or(0));
@@ -78,11 +78,6 @@ impl Knobs {
     pub(crate) fn are_at_rest_after(&self, frames: u32) -> bool {
         frames >= self.moving
     }
-}
-
-/// A value with the host's modulation, in the parameter's range.
-fn played(param: Param, value: f32, offset: f32) -> f32 {
-    param.info().clamp(param.info().moved(value, offset))
 }
 
 #[cfg(test)]
