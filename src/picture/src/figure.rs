@@ -1,9 +1,9 @@
-//! How a body looks at rest: its form, its thickness and the colour of its material.
+//! How a body looks at rest: its form, how it is built, and what it is of.
 
 use crate::form::Form;
-use ecolor::Color32;
+use crate::light::{Finish, Gloss, tint};
 use sprung::preset::Family;
-use sprung::sound::bodies::{Body, Model, Point};
+use sprung::sound::bodies::{BedKind, Body, Model, Point};
 
 /// What is painted of a body.
 pub struct Figure {
@@ -13,14 +13,46 @@ pub struct Figure {
     pub grid: [usize; 2],
     /// The points, those along `x` one after the other.
     pub points: Vec<Point>,
-    /// The colour of its material in white light.
-    pub tint: Color32,
-    /// Thickness of a line as a share of the picture's shorter side; 0 for a string.
-    pub thickness: f32,
-    /// Whether a line is a tube, and not a bar.
-    pub is_round: bool,
+    /// What its surface is of.
+    pub(crate) finish: Finish,
+    pub(crate) build: Build,
     /// What is below a head in a small picture.
     pub drum: Option<Drum>,
+}
+
+/// How a body is built around its points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Build {
+    /// Without thickness.
+    Thin,
+    /// A bar.
+    Bar(Bar),
+    /// A tube.
+    Tube(Tube),
+    /// A plate or a box of this thickness.
+    Slab(f32),
+}
+
+/// A bar; its lengths are in halves of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bar {
+    /// Half its width.
+    pub width: f32,
+    /// Its thickness at the ends, and in the middle.
+    pub thickness: [f32; 2],
+    /// Whether it has holes for a cord.
+    pub has_holes: bool,
+    /// Whether a block holds its left end.
+    pub is_clamped: bool,
+}
+
+/// A tube; its lengths are in halves of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tube {
+    /// Its radius at the left end, and at the right end.
+    pub radius: [f32; 2],
+    /// Whether its left end is closed by a cap.
+    pub has_cap: bool,
 }
 
 /// What is below the head of a drum. It only tells drums apart.
@@ -48,6 +80,30 @@ impl Drum {
     }
 }
 
+impl Build {
+    fn of(model: &Model) -> Self {
+        let bar = |width, thickness| Bar { width, thickness, has_holes: true, is_clamped: false };
+        match model {
+            Model::FreeBar => Self::Bar(bar(0.16, [0.1, 0.1])),
+            Model::Marimba => Self::Bar(bar(0.22, [0.17, 0.07])),
+            Model::Xylophone => Self::Bar(bar(0.19, [0.19, 0.11])),
+            Model::Vibraphone => Self::Bar(bar(0.2, [0.12, 0.06])),
+            Model::Tine => Self::Bar(Bar { has_holes: false, is_clamped: true, ..bar(0.07, [0.035, 0.035]) }),
+            Model::TubularBell => Self::Tube(Tube { radius: [0.065, 0.065], has_cap: true }),
+            Model::OpenTube => Self::Tube(Tube { radius: [0.12, 0.12], has_cap: false }),
+            Model::StoppedTube => Self::Tube(Tube { radius: [0.12, 0.12], has_cap: true }),
+            Model::Cone { truncation } => {
+                let narrow = (*truncation / (1.0 + truncation)) as f32;
+                Self::Tube(Tube { radius: [0.17 * narrow.max(0.12), 0.17], has_cap: false })
+            }
+            Model::Bed(bed) if matches!(bed.kind, BedKind::Box | BedKind::Shell) => Self::Slab(0.42),
+            Model::Plate { .. } | Model::Bed(_) => Self::Slab(0.045),
+            Model::Disc { .. } => Self::Slab(0.035),
+            _ => Self::Thin,
+        }
+    }
+}
+
 impl Figure {
     /// The figure of a body in a large picture.
     pub fn of(body: &Body) -> Self {
@@ -58,64 +114,43 @@ impl Figure {
     /// The figure of a body in a picture of the size of a letter or two.
     pub fn small(body: &Body) -> Self {
         let form = Form::of(&body.model);
-        let grid = match form {
-            Form::Line => [33, 1],
-            Form::Plate { .. } => [3, 3],
-            Form::Round => [3, 25],
-            Form::Bell | Form::Bowl => [9, 25],
-        };
-        let figure = Self::with_grid(body, form, grid);
-        // At this size a bar would look like a line.
-        Self { thickness: 2.0 * figure.thickness, ..figure }
+        Self::with_grid(body, form, form.small_grid())
     }
 
-    /// The figure of a drum of this family, if it is one; another stays as it is.
-    pub(crate) fn drummed(self, family: Option<Family>) -> Self {
-        Self { drum: Drum::of(family).filter(|_| self.form == Form::Round), ..self }
+    /// The figure of a body in a sound of this family: a drum has its shell, a gong its boss, a cymbal its small bell, and a wind instrument
+    /// is of what its kind is made of.
+    pub(crate) fn told_apart(self, family: Option<Family>, tags: &[String]) -> Self {
+        let has = |tag: &str| tags.iter().any(|other| other == tag);
+        let is_plate = self.form == Form::Round && self.build != Build::Thin;
+        match family {
+            Some(Family::Cymbal) if is_plate && has("gong") => self.domed(Form::Gong),
+            Some(Family::Cymbal | Family::Hat | Family::Bell) if is_plate => self.domed(Form::Cymbal),
+            Some(Family::Wind) if has("flute") => Self { finish: Finish::of("steel"), ..self },
+            Some(Family::Wind) if has("reed") && !has("sax") => Self { finish: Finish::of("rosewood"), ..self },
+            _ if self.form == Form::Round && !is_plate => Self { drum: Drum::of(family), ..self },
+            _ => self,
+        }
+    }
+
+    /// A round plate with another form.
+    fn domed(self, form: Form) -> Self {
+        let is_small = self.grid == self.form.small_grid();
+        let grid = if is_small { form.small_grid() } else { form.grid() };
+        Self { form, grid, points: Form::points(grid), ..self }
+    }
+
+    /// Whether it is for a large picture.
+    pub(crate) fn is_large(&self) -> bool {
+        self.grid != self.form.small_grid()
     }
 
     fn with_grid(body: &Body, form: Form, grid: [usize; 2]) -> Self {
-        let (thickness, is_round) = match body.model {
-            Model::String => (0.0, true),
-            Model::OpenTube | Model::StoppedTube | Model::Cone { .. } | Model::TubularBell => (0.11, true),
-            _ => (0.07, false),
+        // The walls around the air of a tube are not known.
+        let finish = match body.material.id {
+            "air" => Finish { tint: tint("brass"), gloss: Gloss::Metal },
+            other => Finish::of(other),
         };
-        Self { form, grid, points: Form::points(grid), tint: tint(body.material.id), thickness, is_round, drum: None }
-    }
-}
-
-/// The colour of a material in white light.
-pub fn tint(material: &str) -> Color32 {
-    let [red, green, blue] = match material {
-        "steel" | "wire" | "snare_wire" => [168, 174, 184],
-        "aluminium" => [196, 199, 205],
-        "brass" => [206, 168, 84],
-        "bronze" => [176, 122, 62],
-        "glass" => [168, 206, 214],
-        "porcelain" => [226, 222, 212],
-        "rosewood" => [134, 70, 46],
-        "maple" => [206, 164, 112],
-        "spruce" => [222, 190, 142],
-        "rubber" => [74, 72, 78],
-        "skin" => [222, 204, 172],
-        "mylar" => [212, 216, 220],
-        "nylon" => [224, 220, 204],
-        "plastic" => [188, 176, 196],
-        _ => [190, 186, 180],
-    };
-    Color32::from_rgb(red, green, blue)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use sprung::sound::bodies::MATERIALS;
-
-    #[test]
-    fn every_material_but_air_has_a_colour_of_its_own() {
-        let other = tint("");
-        for material in MATERIALS.iter().filter(|material| material.id != "air") {
-            assert_ne!(tint(material.id), other, "{}", material.id);
-        }
+        let build = Build::of(&body.model);
+        Self { form, grid, points: Form::points(grid), finish, build, drum: None }
     }
 }

@@ -1,6 +1,7 @@
 //! The forms of bodies in the picture: where their points are at rest, and which way they move.
 
-use emath::{Pos2, Rect, Vec2, pos2, vec2};
+use crate::outline::{BELL, BOWL, CYMBAL, GLASS, GONG, along};
+use emath::{Pos2, Rect, Vec2, vec2};
 use sprung::sound::bodies::{Model, Point};
 use std::f32::consts::TAU;
 
@@ -8,20 +9,22 @@ use std::f32::consts::TAU;
 pub(crate) const LOOK: [f32; 2] = [0.5, 0.866];
 /// The direction from which the picture looks.
 pub(crate) const VIEW: [f32; 3] = [0.0, LOOK[1], LOOK[0]];
-/// The outline of a bell from its crown to its rim: height and radius.
-const BELL: [[f32; 2]; 8] =
-    [[1.0, 0.0], [0.99, 0.24], [0.91, 0.35], [0.7, 0.39], [0.46, 0.44], [0.25, 0.52], [0.09, 0.62], [0.0, 0.72]];
-/// The outline of a bowl or a glass, from the bottom to the rim.
-const BOWL: [[f32; 2]; 8] =
-    [[0.0, 0.0], [0.02, 0.3], [0.1, 0.56], [0.24, 0.74], [0.42, 0.86], [0.62, 0.92], [0.82, 0.95], [1.0, 0.96]];
+/// Which way bars, tubes and plates lie, whose right end is nearer to the viewer: cosine and sine of the angle.
+pub(crate) const TURN: [f32; 2] = [0.94, 0.34];
 
 /// The form of a body. The coordinates of its points are those of [`Model`]: `x` and `y` from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
-    /// A string, a bar, the air in a tube.
+    /// A string.
     Line,
-    /// A head or a round plate.
+    /// A bar or a tube, which lies in space.
+    Rod,
+    /// A head or a flat round plate.
     Round,
+    /// A cymbal, with its small bell up.
+    Cymbal,
+    /// A gong, with its boss up.
+    Gong,
     /// A plate, with the length of its side along `x` over that along `y`.
     Plate {
         /// Length over length.
@@ -29,8 +32,12 @@ pub enum Form {
     },
     /// A bell, whose rim is below.
     Bell,
-    /// A bowl or a glass, whose rim is above.
+    /// A bell with a grip.
+    HandBell,
+    /// A bowl, whose rim is above.
     Bowl,
+    /// A glass on its foot.
+    Glass,
 }
 
 /// A point in space, with the direction in which it moves.
@@ -40,26 +47,77 @@ struct Place {
     normal: [f32; 3],
 }
 
+/// How places in space are seen in a picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    /// Where the origin of space is.
+    pub origin: Pos2,
+    /// Size of the unit in pixels.
+    pub unit: f32,
+}
+
+impl View {
+    /// Where a place in space is in the picture.
+    pub(crate) fn at(&self, [x, y, z]: [f32; 3]) -> Pos2 {
+        self.origin + self.unit * vec2(x, y * LOOK[0] - z * LOOK[1])
+    }
+}
+
 impl Form {
     /// The form of a model.
     pub fn of(model: &Model) -> Self {
         match model {
+            Model::String => Self::Line,
             Model::Membrane | Model::Timpani(_) | Model::Disc { .. } => Self::Round,
             Model::Plate { aspect, .. } => Self::Plate { aspect: *aspect as f32 },
             Model::Bed(_) => Self::Plate { aspect: 1.5 },
-            Model::ChurchBell | Model::HandBell => Self::Bell,
-            Model::Glass { .. } | Model::Bowl => Self::Bowl,
-            _ => Self::Line,
+            Model::ChurchBell => Self::Bell,
+            Model::HandBell => Self::HandBell,
+            Model::Glass { .. } => Self::Glass,
+            Model::Bowl => Self::Bowl,
+            Model::Mass | Model::Custom(_) => Self::Line,
+            _ => Self::Rod,
         }
     }
 
-    /// How many points a picture has along `x` and along `y`.
+    /// Whether all points lie along one line.
+    pub fn is_line(self) -> bool {
+        matches!(self, Self::Line | Self::Rod)
+    }
+
+    /// Whether it is a bell.
+    pub fn is_bell(self) -> bool {
+        matches!(self, Self::Bell | Self::HandBell)
+    }
+
+    /// Whether one looks into it.
+    pub(crate) fn is_open(self) -> bool {
+        matches!(self, Self::Bowl | Self::Glass)
+    }
+
+    /// How many points a large picture has along `x` and along `y`.
     pub fn grid(self) -> [usize; 2] {
         match self {
             Self::Line => [97, 1],
+            Self::Rod => [65, 1],
             Self::Round => [15, 61],
+            Self::Cymbal | Self::Gong => [31, 73],
             Self::Plate { .. } => [31, 21],
-            Self::Bell | Self::Bowl => [22, 61],
+            Self::Bell | Self::HandBell => [28, 81],
+            Self::Bowl | Self::Glass => [20, 61],
+        }
+    }
+
+    /// How many a picture of the size of a letter or two has.
+    pub(crate) fn small_grid(self) -> [usize; 2] {
+        match self {
+            Self::Line => [33, 1],
+            Self::Rod => [9, 1],
+            Self::Round => [3, 25],
+            Self::Cymbal | Self::Gong => [8, 25],
+            Self::Plate { .. } => [3, 3],
+            Self::Bell | Self::HandBell => [10, 25],
+            Self::Bowl | Self::Glass => [8, 25],
         }
     }
 
@@ -73,25 +131,30 @@ impl Form {
     /// Factor for the drawn displacement at a point. A bell's crown hardly moves; its model does not contain this,
     /// since its modes were measured at the rim.
     pub fn weight(self, point: Point) -> f32 {
-        if self == Self::Bell { (point.x * point.x) as f32 } else { 1.0 }
+        if self.is_bell() { (point.x * point.x) as f32 } else { 1.0 }
     }
 
     fn place(self, point: Point) -> Place {
         let (x, y) = (point.x as f32, point.y as f32);
+        let up = [0.0, 0.0, 1.0];
         let turned = |[height, radius]: [f32; 2]| {
             // The default place of the strike is in front.
             let around = Vec2::angled(TAU * (y + 0.25));
             Place { at: [radius * around.x, radius * around.y, height], normal: [around.x, around.y, 0.0] }
         };
         match self {
-            Self::Line => Place { at: [2.0 * x - 1.0, 0.0, 0.0], normal: [0.0, 0.0, 1.0] },
-            Self::Round => Place { normal: [0.0, 0.0, 1.0], ..turned([0.0, x]) },
+            Self::Line => Place { at: [2.0 * x - 1.0, 0.0, 0.0], normal: up },
+            Self::Rod => Place { at: lying([2.0 * x - 1.0, 0.0], 0.0), normal: up },
+            Self::Round => Place { normal: up, ..turned([0.0, x]) },
+            Self::Cymbal => Place { normal: up, ..turned([along(&CYMBAL, x)[0], x]) },
+            Self::Gong => Place { normal: up, ..turned([along(&GONG, x)[0], x]) },
             Self::Plate { aspect } => {
-                let [width, depth] = if aspect >= 1.0 { [1.0, 1.0 / aspect] } else { [aspect, 1.0] };
-                Place { at: [(2.0 * x - 1.0) * width, (2.0 * y - 1.0) * depth, 0.0], normal: [0.0, 0.0, 1.0] }
+                let [width, depth] = sides(aspect);
+                Place { at: lying([(2.0 * x - 1.0) * width, (2.0 * y - 1.0) * depth], 0.0), normal: up }
             }
-            Self::Bell => turned(along(&BELL, x)),
+            Self::Bell | Self::HandBell => turned(along(&BELL, x)),
             Self::Bowl => turned(along(&BOWL, x)),
+            Self::Glass => turned(along(&GLASS, x)),
         }
     }
 
@@ -103,25 +166,34 @@ impl Form {
 
     /// Where a point is in the picture. The displacement is in the picture's unit.
     pub fn on(self, rect: Rect, point: Point, displacement: f32) -> Pos2 {
-        let [x, y, z] = self.in_space(point, displacement);
-        let [sine, cosine] = LOOK;
+        self.view(rect).at(self.in_space(point, displacement))
+    }
+
+    /// How it is seen in a picture of this size.
+    pub(crate) fn view(self, rect: Rect) -> View {
         let (unit, middle) = self.scale(rect);
-        match self {
-            Self::Line => pos2(rect.center().x + x * unit, rect.center().y - z * unit),
-            _ => pos2(rect.center().x + x * unit, rect.center().y + unit * (y * sine - (z - middle) * cosine)),
-        }
+        View { unit, origin: rect.center() + vec2(0.0, unit * middle * LOOK[1]) }
     }
 
     /// Size of the picture's unit in pixels, and the height in space that is shown in the middle.
     fn scale(self, rect: Rect) -> (f32, f32) {
         let [width, height] = [rect.width() / 2.0, rect.height() / 2.0];
+        // Leaves room for displacements up and down, and for what belongs to a body beyond its points.
         match self {
             Self::Line => (width * 0.92, 0.0),
-            // Leaves room for displacements up and down.
+            Self::Rod => ((width * 0.94).min(height / 0.52), -0.05),
             Self::Round => ((width * 0.9).min(height / 0.8), 0.0),
-            Self::Plate { .. } => ((width * 0.9).min(height / 0.8), 0.0),
-            Self::Bell => ((width * 0.85).min(height / 0.9), 0.5),
+            Self::Cymbal => ((width * 0.9).min(height / 0.8), 0.02),
+            Self::Gong => ((width * 0.9).min(height / 0.86), -0.06),
+            Self::Plate { aspect } => {
+                let [x, y] = sides(aspect);
+                let [across, down] = [x * TURN[0] + y * TURN[1], x * TURN[1] + y * TURN[0]];
+                ((width * 0.95 / across).min(height / (0.28 + down * LOOK[0])), -0.02)
+            }
+            Self::Bell => ((width * 0.85).min(height / 0.92), 0.53),
+            Self::HandBell => ((width * 0.85).min(height / 1.14), 0.8),
             Self::Bowl => ((width * 0.85).min(height / 1.05), 0.5),
+            Self::Glass => ((width * 0.85).min(height / 1.04), 0.82),
         }
     }
 
@@ -133,30 +205,33 @@ impl Form {
     /// The largest displacement that the picture shows, in its unit.
     pub fn reach(self, rect: Rect) -> f32 {
         match self {
-            Self::Line => 0.34 * rect.height() / self.scale(rect).0,
-            Self::Round | Self::Plate { .. } => 0.28,
-            Self::Bell | Self::Bowl => 0.16,
+            Self::Line => 0.39 * rect.height() / self.scale(rect).0,
+            Self::Rod => 0.2,
+            Self::Round | Self::Cymbal | Self::Gong | Self::Plate { .. } => 0.28,
+            Self::Bell | Self::HandBell | Self::Bowl => 0.16,
+            Self::Glass => 0.1,
         }
     }
 
     /// Whether a point lies behind others, so that its lines are not drawn and it cannot be touched.
     pub fn is_behind(self, point: Point) -> bool {
-        matches!(self, Self::Bell | Self::Bowl) && self.place(point).normal[1] < -0.05
+        (self.is_bell() || self.is_open()) && self.place(point).normal[1] < -0.05
     }
 
     /// The point at rest that is nearest to a place in the picture, and how far away it is in pixels.
     pub fn nearest(self, rect: Rect, place: Pos2) -> (Point, f32) {
         const STEPS: usize = 100;
-        let rows = if self == Self::Line { 1 } else { STEPS + 1 };
+        let rows = if self.is_line() { 1 } else { STEPS + 1 };
         let point = |step: usize| Point {
             x: (step % (STEPS + 1)) as f64 / STEPS as f64,
             y: (step / (STEPS + 1)) as f64 / STEPS as f64,
         };
         let points = (0..(STEPS + 1) * rows).map(point).filter(|point| !self.is_behind(*point));
+        let view = self.view(rect);
         let far = |point: &Point| {
-            let off = self.on(rect, *point, 0.0) - place;
+            let off = view.at(self.in_space(*point, 0.0)) - place;
             // Along a line, only the distance in the line's direction counts.
-            if self == Self::Line {
+            if self.is_line() {
                 vec2(off.x, (off.y.abs() - rect.height() / 2.0).max(0.0)).length()
             } else {
                 off.length()
@@ -173,28 +248,39 @@ impl Form {
     }
 }
 
-/// The point of the outline at a share of its length, on a smooth curve through all of its points (Catmull and Rom).
-fn along(outline: &[[f32; 2]], share: f32) -> [f32; 2] {
-    let place = share.clamp(0.0, 1.0) * (outline.len() - 1) as f32;
-    let before = (place as usize).min(outline.len() - 2);
-    let t = place - before as f32;
-    std::array::from_fn(|axis| {
-        let at = |place: usize| outline[place.min(outline.len() - 1)][axis];
-        let [a, b, c, d] = [at(before.saturating_sub(1)), at(before), at(before + 1), at(before + 2)];
-        b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a)))
-    })
+/// Half the sides of a plate.
+fn sides(aspect: f32) -> [f32; 2] {
+    if aspect >= 1.0 { [1.0, 1.0 / aspect] } else { [aspect, 1.0] }
+}
+
+/// A place of a body that lies turned: along it, across it to the viewer, and up.
+pub(crate) fn lying([along, across]: [f32; 2], up: f32) -> [f32; 3] {
+    let [cosine, sine] = TURN;
+    [along * cosine - across * sine, along * sine + across * cosine, up]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use emath::pos2;
 
     #[test]
     fn every_point_is_in_the_picture_and_found_again() {
         let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(360.0, 240.0));
-        for form in
-            [Form::Line, Form::Round, Form::Plate { aspect: 2.0 }, Form::Plate { aspect: 0.5 }, Form::Bell, Form::Bowl]
-        {
+        let forms = [
+            Form::Line,
+            Form::Rod,
+            Form::Round,
+            Form::Cymbal,
+            Form::Gong,
+            Form::Plate { aspect: 2.0 },
+            Form::Plate { aspect: 0.5 },
+            Form::Bell,
+            Form::HandBell,
+            Form::Bowl,
+            Form::Glass,
+        ];
+        for form in forms {
             for point in Form::points(form.grid()) {
                 for displacement in [-1.0, 0.0, 1.0] {
                     let at = form.on(rect, point, displacement * form.reach(rect));

@@ -2,19 +2,27 @@
 //!
 //! The plugin's window paints it with egui, the page in a browser on a canvas.
 
+mod bar;
+mod drum;
 mod figure;
 mod form;
+mod lathe;
+mod light;
+mod mesh;
 mod origin;
+mod outline;
+mod picture;
 pub mod play;
 mod shape;
-mod surface;
 mod swing;
+mod tube;
 
-pub use figure::{Drum, Figure, tint};
+pub use figure::{Drum, Figure};
 pub use form::Form;
+pub use light::tint;
 pub use origin::{Origin, model_name};
+pub use picture::{Ink, Picture};
 pub use shape::{BodyShape, or_suggested, small_figure, suggested_body};
-pub use surface::Picture;
 pub use swing::Swing;
 
 /// How far from the body a click still touches it, in pixels.

@@ -1,7 +1,6 @@
 //! The body that is drawn for a sound: its form, and each mode's shape on it.
 
 use crate::figure::Figure;
-use crate::form::Form;
 use crate::origin::{Origin, model_name};
 use sprung::internals::library::tagged_material;
 use sprung::patch::ModeTable;
@@ -66,7 +65,7 @@ pub fn small_figure(modes: &ModeTable, family: Option<Family>, tags: &[String]) 
         Some(body) => Figure::small(body),
         None => Figure::small(&suggested_body(family, tags)),
     }
-    .drummed(family)
+    .told_apart(family, tags)
 }
 
 impl BodyShape {
@@ -88,9 +87,9 @@ impl BodyShape {
                 (body, NEAR[1], caption)
             }
         };
-        let figure = Figure::of(&body);
+        let figure = Figure { drum: None, ..Figure::of(&body).told_apart(family, tags) };
         let form = figure.form;
-        let most = DRAWN[usize::from(form != Form::Line)];
+        let most = DRAWN[usize::from(!form.is_line())];
         // A bed's modes depend on how many there are.
         let count = if matches!(body.model, Model::Bed(_)) { body.modes } else { body.modes.min(DRAWN[0]) };
         let points = &figure.points;
@@ -127,8 +126,8 @@ impl BodyShape {
         match (self.origin.body(), self.figure.form) {
             // On a string, the place is counted from the nearer end.
             (None, _) => Point { x: point.x.min(1.0 - point.x).clamp(0.01, 0.5), y: 0.0 },
-            (Some(body), Form::Line) => Point { y: body.strike.y, ..point },
-            (Some(body), Form::Bell) => Point { x: body.strike.x, ..point },
+            (Some(body), form) if form.is_line() => Point { y: body.strike.y, ..point },
+            (Some(body), form) if form.is_bell() => Point { x: body.strike.x, ..point },
             (Some(_), _) => point,
         }
     }
@@ -148,6 +147,7 @@ impl BodyShape {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::form::Form;
     use sprung::internals::editor::modes_of_body;
     use sprung::preset::Preset;
 

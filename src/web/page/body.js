@@ -6,6 +6,9 @@ const colour = (name) => getComputedStyle(document.documentElement).getPropertyV
 const [AT_REST, PER_SPEED] = [0.7, 0.2];
 const RECENT = 80; // ms
 
+// How the lines of a body are painted: colour, width, strength.
+const INKS = [["string", 2.5, 1], ["--text", 1.2, 0.5], ["--text", 1, 0.25]];
+
 // `player` is the page’s own, with the preset that is heard; `strike(place, velocity)` is called for a click, without a place if the
 // body has none there. Returns functions that take the energies of the modes, and that say that the body is another.
 export function drawBody(canvas, player, strike) {
@@ -72,10 +75,12 @@ export function paint(context, numbers, gold) {
     context.fillStyle = context.strokeStyle = `rgb(${next()} ${next()} ${next()})`;
     context.fill(), context.stroke();
   }
-  context.strokeStyle = polygons > 0 ? colour("--text") : gold;
-  context.globalAlpha = polygons > 0 ? 0.5 : 1;
-  context.lineWidth = polygons > 0 ? 1.2 : 2.5;
-  for (let lines = next(); lines > 0; lines--) trace(next()), context.stroke();
+  for (let lines = next(); lines > 0; lines--) {
+    const [ink, width, strength] = INKS[next()];
+    context.strokeStyle = ink === "string" ? gold : colour(ink);
+    [context.lineWidth, context.globalAlpha] = [width, strength];
+    trace(next()), context.stroke();
+  }
   context.globalAlpha = 1;
   if (at === numbers.length) return;
   const [x, y] = [next(), next()];

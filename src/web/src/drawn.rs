@@ -27,8 +27,8 @@ impl Drawn {
     }
 
     /// Draws the body some seconds later (at its greatest bend if they are negative), in a picture of this size, with a colour (0xRRGGBB) for what moves. The numbers are: how many
-    /// polygons, and for each four corners and its colour; how many lines, and for each how many points, and these; and the place of
-    /// the strike, if it is known. Returns how many numbers they are.
+    /// polygons, and for each four corners and its colour; how many lines, and for each its ink (0 for a string, or else 1 more than
+    /// that of [`sprung_picture::Ink`]), how many points, and these; and the place of the strike, if it is known. Returns how many numbers they are.
     pub(crate) fn draw(&mut self, size: [f32; 2], seconds: f32, glow: u32) -> usize {
         let rect = rect(size);
         let moved = self.swing.advance((seconds >= 0.0).then_some(seconds), &self.shape, &self.energies, rect);
@@ -55,10 +55,11 @@ impl Drawn {
             let mean = |part: usize| corners.iter().map(|(_, colour)| f32::from(colour[part])).sum::<f32>() / 4.0;
             numbers.extend([mean(0), mean(1), mean(2)]);
         }
-        let lines = picture.edges.iter().chain(Some(&picture.string).filter(|string| !string.is_empty()));
+        let string = Some((0, &picture.string)).filter(|(_, string)| !string.is_empty());
+        let lines = picture.lines.iter().map(|(ink, line)| (1 + *ink as u8, line)).chain(string);
         numbers.push(lines.clone().count() as f32);
-        for line in lines {
-            numbers.push(line.len() as f32);
+        for (ink, line) in lines {
+            numbers.extend([f32::from(ink), line.len() as f32]);
             line.iter().for_each(|at| numbers.extend([at.x, at.y]));
         }
         picture.strike.iter().for_each(|at| numbers.extend([at.x, at.y]));

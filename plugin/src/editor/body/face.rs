@@ -4,7 +4,7 @@ use crate::editor::theme::Palette;
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Painter, Pos2, Rect, Shape, Stroke};
 use sprung::sound::bodies::Point;
-use sprung_picture::{Figure, Picture};
+use sprung_picture::{Figure, Ink, Picture};
 
 /// Space between a body and the frame that says that it is only a guess.
 const AROUND: f32 = 14.0;
@@ -54,9 +54,12 @@ fn paint_picture(painter: &Painter, picture: Picture, palette: &Palette) {
     }
     let vertices = picture.vertices.into_iter().map(|(pos, color)| Vertex { pos, uv: WHITE_UV, color }).collect();
     painter.add(Mesh { vertices, indices: picture.triangles.concat(), ..Mesh::default() });
-    let edge = Stroke::new(1.2, palette.text.gamma_multiply(0.5));
-    for points in picture.edges {
-        painter.add(Shape::line(points, edge));
+    for (ink, points) in picture.lines {
+        let stroke = match ink {
+            Ink::Edge => Stroke::new(1.2, palette.text.gamma_multiply(0.5)),
+            Ink::Fine => Stroke::new(1.0, palette.text.gamma_multiply(0.25)),
+        };
+        painter.add(Shape::line(points, stroke));
     }
     if let Some(at) = picture.strike {
         painter.circle(at, 5.5, palette.panel, Stroke::new(2.0, palette.text));

@@ -185,7 +185,7 @@ fn strike(shape: &BodyShape, shown: &Shown, controls: &Controls) -> Option<Point
     shown.preset()?;
     match shape.origin.body() {
         Some(body) => Some(body.strike),
-        None if shape.figure.form == Form::Line => {
+        None if shape.figure.form.is_line() => {
             Some(Point { x: f64::from(controls.value(exciter(controls)?.info())) / 100.0, y: 0.0 })
         }
         None => None,
@@ -195,10 +195,10 @@ fn strike(shape: &BodyShape, shown: &Shown, controls: &Controls) -> Option<Point
 fn describe(point: Point, shape: &BodyShape) -> String {
     let [x, y] = [point.x, point.y].map(|share| share * 100.0);
     match shape.figure.form {
-        Form::Line => format!("struck at {x:.1} %"),
-        Form::Bell => format!("struck at {:.0}° round it", 3.6 * y),
-        Form::Round | Form::Bowl => format!("struck at {x:.0} %, {:.0}° round it", 3.6 * y),
+        Form::Line | Form::Rod => format!("struck at {x:.1} %"),
+        Form::Bell | Form::HandBell => format!("struck at {:.0}° round it", 3.6 * y),
         Form::Plate { .. } => format!("struck at {x:.0} %, {y:.0} %"),
+        _ => format!("struck at {x:.0} %, {:.0}° round it", 3.6 * y),
     }
 }
 

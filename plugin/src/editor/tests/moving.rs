@@ -54,7 +54,7 @@ fn pictures_of_bodies_are_as_accepted() {
 
 #[test]
 fn a_body_is_struck_where_it_is_clicked_and_that_is_undone_by_name() {
-    for (sound, form) in [("Opera Gong", Form::Round), ("Guitar", Form::Line)] {
+    for (sound, form) in [("Opera Gong", Form::Gong), ("Guitar", Form::Line)] {
         let mut band = Band::new(sound, SIZE, Theme::Dark);
         band.show_body();
         let before = band.stage.params.state();
