@@ -217,7 +217,7 @@ fn a_dragged_mode_changes_sounds_and_comes_back() {
     let before = band.stage.params.state();
     let modes = |band: &Band| band.stage.params.loaded().kit.sounds()[0].patch().modes.as_slice().to_vec();
     assert_eq!(modes(&band).len(), 1);
-    let area = band.rect("Modes");
+    let area = band.rect("Modes of the body");
     // Adds a second mode, at a place without one.
     let place = area.center();
     for _ in 0..2 {
