@@ -208,7 +208,10 @@ fn the_limiters_work_is_told_beside_the_level() {
     band.event(Event::PointerMoved(meter));
     band.passes(60);
     assert!(band.stage.params.link().telemetry.snapshot().lowered > 1.0);
-    assert!(band.stage.paints("the limiter takes"));
+    assert!(
+        band.stage.paints("the limiter takes") && band.stage.paints("limiter −"),
+        "in the status line, and at the meter"
+    );
 }
 
 #[test]
