@@ -4,17 +4,22 @@ use crate::editor::controls::Controls;
 use egui::{Id, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo};
 use sprung::params::{Param, ParamInfo};
 use sprung::patch::Patch;
-use sprung::patch::routes::amount_param;
+use sprung::patch::routes::{Source, amount_param};
 use sprung_picture::play::{EXCITERS, Exciter};
+
+/// How much of the brightness is left of a knob that has no effect.
+const DIMMED: f32 = 0.45;
 
 /// A part of the sound that can be off.
 pub(crate) struct Lamp {
     /// The section of the part's parameters.
     pub(crate) section: &'static str,
-    /// The parameter that is least while the part is off.
+    /// The parameter that is at rest while the part is off.
     pub(crate) param: Param,
-    /// Another parameter that must be least as well.
+    /// Another parameter that must be at rest as well.
     pub(crate) also: Option<Param>,
+    /// Whether they rest at their defaults, and not where they are least.
+    pub(crate) rests_at_default: bool,
     /// The value of the first for a part that has not been on before.
     pub(crate) on: f32,
     /// What the part does.
@@ -22,13 +27,13 @@ pub(crate) struct Lamp {
 }
 
 const fn lamp(section: &'static str, param: Param, on: f32, help: &'static str) -> Lamp {
-    Lamp { section, param, also: None, on, help }
+    Lamp { section, param, also: None, rests_at_default: false, on, help }
 }
 
 /// The lamp of an exciter.
 const fn mover(exciter: &Exciter, help: &'static str) -> Lamp {
     let Exciter { section, level, also, on } = *exciter;
-    Lamp { section, param: level, also, on, help }
+    Lamp { section, param: level, also, rests_at_default: false, on, help }
 }
 
 /// What moves the body.
@@ -45,12 +50,17 @@ pub(crate) const MOVERS: [Lamp; 6] = {
 };
 
 /// What touches the body, and what its sound passes through.
-const OTHERS: [Lamp; 6] = [
+const OTHERS: [Lamp; 7] = [
     lamp("Rattle", Param::Rattle, 1.0, "Something loose lies on it or hangs at it, and strikes back."),
     lamp("Soundbox", Param::Soundbox, 1.0, "A second body, whose resonances all notes pass."),
     lamp("Strings", Param::StringsLevel, 30.0, "Strings that ring along."),
     lamp("Tremolo", Param::TremoloDepth, 50.0, "A motor takes the loudness down and up again."),
     lamp("Drive", Param::Drive, 6.0, "Lifts what is soft and holds what is loud."),
+    Lamp {
+        also: Some(Param::ToneHigh),
+        rests_at_default: true,
+        ..lamp("Tone", Param::ToneLow, 3.0, "Lifts or lowers what is low and what is high.")
+    },
     lamp("Space", Param::Space, 1.0, "A plate, a spring tank or a room that reverberates."),
 ];
 
@@ -66,14 +76,58 @@ const DEPENDENT: [(&[Param], &[Param]); 8] = [
     (&[Param::UnisonDetune, Param::UnisonSpread, Param::UnisonPhase], &[Param::Unison]),
 ];
 
-/// Whether turning a parameter of a preset can be heard. Those of a kit move other sounds than the one that is shown, too.
-pub(crate) fn has_effect(info: &ParamInfo, patch: &Patch, controls: &Controls) -> bool {
-    let Some((_, others)) = DEPENDENT.iter().find(|(dependent, _)| dependent.contains(&info.param)) else {
-        return true;
-    };
+/// Why turning a parameter of a preset cannot be heard, if it cannot. Those of a kit move other sounds than the one that is shown, too.
+fn quiet(info: &ParamInfo, patch: &Patch, controls: &Controls) -> Option<String> {
+    if !controls.is_preset {
+        return None;
+    }
     let is_modulated = |param: &Param| controls.params.knobs()[*param as usize].offset() != 0.0;
     let acts = |param: &Param| controls.value(param.info()) != param.info().default || is_modulated(param);
-    controls.own(info).is_some() || others.iter().any(acts) || is_raised(others.iter().copied(), patch, controls)
+    if let Some(lamp) = of(info.section)
+        && lamp.params().all(|param| param != info.param)
+        && info.param != Param::StereoWidth
+        && !lamp.is_on(controls)
+        && !lamp.params().any(|param| is_modulated(&param))
+        && !is_raised(lamp.params(), patch, controls)
+    {
+        let pages = if MOVERS.iter().any(|mover| mover.section == info.section) { "Sound and Play" } else { "Sound" };
+        return Some(format!("{} is off: its lamp is on {pages}.", info.section));
+    }
+    if info.section == "Macros" {
+        let is_of = |source: Option<Source>| source.is_some_and(|source| source.id() == info.id);
+        let leads = patch.routes.iter().any(|(_, route)| is_of(Some(route.source)) || is_of(route.scale));
+        return (!leads).then(|| "No route leads from it yet: drag it to a knob, on Motion.".to_owned());
+    }
+    let (_, others) = DEPENDENT.iter().find(|(dependent, _)| dependent.contains(&info.param))?;
+    if others.iter().any(acts) || is_raised(others.iter().copied(), patch, controls) {
+        return None;
+    }
+    let names: Vec<String> = others.iter().map(|other| other.info().name.to_owned()).collect();
+    let [names, is, it] = match names.len() {
+        1 => [names[0].clone(), format!("is {}", controls.text(others[0].info())), "it".to_owned()],
+        _ => [names.join(" and "), "are 0".to_owned(), "one".to_owned()],
+    };
+    Some(format!("{names} {is}: turn {it} up and this matters."))
+}
+
+/// Shows a parameter in a cell, dimmed if turning it cannot be heard; its hint then says what to switch on or to turn up first.
+pub(crate) fn dimmed(
+    ui: &mut Ui,
+    cell: Rect,
+    info: &ParamInfo,
+    patch: &Patch,
+    controls: &mut Controls,
+    show: impl FnOnce(&mut Ui, &mut Controls),
+) {
+    let (opacity, why) = (ui.opacity(), quiet(info, patch, controls));
+    ui.set_opacity(if why.is_some() { opacity * DIMMED } else { opacity });
+    show(ui, controls);
+    ui.set_opacity(opacity);
+    if let (Some(why), Some(hint)) = (why, controls.hint.as_mut())
+        && ui.rect_contains_pointer(cell)
+    {
+        hint.help = format!("{why} {}", hint.help);
+    }
 }
 
 /// Whether a route can move one of these parameters.
@@ -91,10 +145,15 @@ pub(crate) fn of(section: &str) -> Option<&'static Lamp> {
 impl Lamp {
     /// Whether the part is on.
     pub(crate) fn is_on(&self, controls: &Controls) -> bool {
-        self.params().any(|param| controls.heard(param.info()) > param.info().min)
+        self.params().any(|param| controls.heard(param.info()) != self.rest(param))
     }
 
-    /// The parameters that are least while the part is off.
+    /// Where a parameter is while the part is off.
+    fn rest(&self, param: Param) -> f32 {
+        if self.rests_at_default { param.info().default } else { param.info().min }
+    }
+
+    /// The parameters that are at rest while the part is off.
     pub(crate) fn params(&self) -> impl Iterator<Item = Param> + Clone {
         std::iter::once(self.param).chain(self.also)
     }
@@ -105,7 +164,7 @@ impl Lamp {
         if self.is_on(controls) {
             let before = self.params().map(|param| (param, controls.value(param.info()))).collect();
             controls.interaction.switched_off.insert(part, before);
-            self.params().map(|param| (param, param.info().min)).collect()
+            self.params().map(|param| (param, self.rest(param))).collect()
         } else {
             controls.interaction.switched_off.remove(&part).unwrap_or_else(|| vec![(self.param, self.on)])
         }

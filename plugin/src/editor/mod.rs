@@ -5,8 +5,8 @@
 //! | `window` | the whole: header, status line, and what they ask for |
 //! | `theme` | colours, sizes and fonts; the places of the parts |
 //! | `play` | the page it opens with: the body large, what moves it, what it is, what it stands on, macros |
-//! | `modes`, `displays`, `body` | the upper half of *Sound*: the modes, moving pictures, the moving body; also the body's page |
-//! | `pages` | the lower half: the way of the sound, sections of parameters, tuning, devices |
+//! | `pages` | *Sound*: the way of the sound as a picture, its chosen part with knobs in groups, the line of sources, tuning |
+//! | `modes`, `displays`, `body` | pictures of the body there: its modes, its motion; what it is made of |
 //! | `motion`, `routes` | what moves: sources, envelopes and oscillators as curves; routes as sentences, also learnt and dragged |
 //! | `kit` | the pads of a kit, the sounds that are put on them, and the chosen pad; all keys of a preset |
 //! | `keyboard` | the piano and its wheels, and whatever else plays a key |

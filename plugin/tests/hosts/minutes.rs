@@ -13,17 +13,17 @@ const SAVE: [i16; 2] = [668, 23];
 /// The tab *Sound*: a new window shows *Play*.
 const SOUND: [i16; 2] = [158, 23];
 const FIRST_SOUND: [i16; 2] = [200, 150];
-const MODEL_TAB: [i16; 2] = [486, 306];
-const MODEL: [i16; 2] = [137, 400];
-const MATERIAL: [i16; 2] = [137, 425];
-const SPACE_TAB: [i16; 2] = [888, 337];
-const SPACE: [i16; 2] = [415, 396];
-const SIZE_VALUE: [i16; 2] = [489, 430];
-const MIX_VALUE: [i16; 2] = [415, 562];
+const MODEL_TAB: [i16; 2] = [346, 274];
+const MODEL: [i16; 2] = [213, 323];
+const MATERIAL: [i16; 2] = [213, 348];
+const SPACE_TAB: [i16; 2] = [891, 156];
+const SPACE: [i16; 2] = [696, 314];
+const SIZE_VALUE: [i16; 2] = [788, 350];
+const MIX_VALUE: [i16; 2] = [696, 506];
 /// Entries of the lists that open there.
-const MARIMBA: [i16; 2] = [266, 114];
-const GLASS: [i16; 2] = [133, 141];
-const ROOM: [i16; 2] = [443, 510];
+const MARIMBA: [i16; 2] = [418, 227];
+const GLASS: [i16; 2] = [419, 275];
+const ROOM: [i16; 2] = [717, 429];
 
 const ENTER: u8 = 36;
 const ESCAPE: u8 = 9;

@@ -84,6 +84,9 @@ const ABOUT: [(&str, &str, &str); 41] = [
     ("highest", "Highest key", "The highest key with modes of its own."),
 ];
 
+/// The titles of numbers that belong together.
+pub(super) const GROUPS: [&str; 5] = ["", "Size", "Material", "Places", "Modes"];
+
 impl Part {
     pub(super) fn body(self, origin: &Origin) -> Option<&Body> {
         match self {
@@ -146,6 +149,19 @@ impl Number {
             return ["Damping", "Damping between the bodies, as a share of the critical one."];
         }
         ABOUT.iter().find(|(name, ..)| *name == self.name).map_or([self.name, ""], |(_, title, help)| [title, help])
+    }
+
+    /// The title of the numbers to which it belongs; those of a joint are few and have none.
+    pub(super) fn group(&self) -> &'static str {
+        match self.name {
+            "damping" if self.range[0] == 0.0 => "",
+            "stiffness" | "mass" | "struck" | "heard" | "polarisation" | "lowest" | "highest" => "",
+            "frequency" | "length" | "thickness" | "tension" | "aspect" | "truncation" | "slenderness" => "Size",
+            "head_radius" | "head_density" | "kettle_volume" => "Size",
+            "material_density" | "young" | "poisson" | "loss_b0" | "loss_b1" | "loss_power" | "damping" => "Material",
+            "strike" | "strike_y" | "pickup" | "pickup_y" | "joint" | "joint_y" => "Places",
+            _ => "Modes",
+        }
     }
 
     /// A value as text: a key as a note, others in few letters and with their unit.
@@ -236,8 +252,11 @@ mod tests {
         for (name, ..) in ABOUT {
             assert!(names().any(|known| known == name), "{name}");
         }
+        let in_a_group =
+            |origin: &Origin, part: Part| part.numbers(origin).iter().all(|number| GROUPS.contains(&number.group()));
         for (_, model) in Model::ALL {
             let mut origin = Origin::FromBody(Box::new(Body::new(model.clone())));
+            assert!(in_a_group(&origin, Part::First));
             for number in Part::First.numbers(&origin) {
                 let [min, max] = number.range;
                 let value = ((min + max) / 2.0).floor().max(min);

@@ -1,28 +1,36 @@
-//! The page of the body: its model, material and numbers, and those of a second body and of their joint.
+//! What the body is: its model, material and numbers, and those of a second body and of their joint.
 
 use super::edit::BodyEdit;
-use super::numbers::{Number, Part};
-use super::offer::{offer, offer_pad};
+use super::numbers::{GROUPS, Number, Part};
+use super::offer::{TAKES, offer, offer_pad, suggestion};
 use super::origin::OriginShown;
+use super::pick::{Tiles, disc};
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
-use crate::editor::theme::{GAP, PADDING, SMALL};
+use crate::editor::theme::{GAP, SMALL};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::number;
 use crate::editor::widgets::text::{line, paragraph};
 use crate::link::Link;
-use egui::{Align2, Id, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, vec2};
+use egui::{Align2, Id, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
 use sprung::internals::editor::LINK_KINDS;
 use sprung::sound::bodies::{MATERIALS, Model};
+use sprung_picture::play::{DISCS, MODELS};
 use sprung_picture::{Origin, model_name};
 
-/// Width of the part with model and material.
+/// Width of the part with model and material as lists, and with pictures of them, if it is so wide and high.
 const SIDE: f32 = 188.0;
+const PICTURED: [f32; 3] = [340.0, 840.0, 224.0];
 /// Height of a row in that part, and width of the names.
 const ROW: f32 = 25.0;
 const NAMES: f32 = 54.0;
+/// Heights of tiles in one line and in two, and of discs, with the gaps after them.
+const TILES: [f32; 2] = [36.0, 96.0];
+const LINE_OF_DISCS: f32 = 32.0;
+/// Height of the title of some numbers.
+const TITLE: f32 = 14.0;
 /// Size of a number with its name.
 const CELL: [f32; 2] = [88.0, number::HEIGHT];
 /// Largest width of a number's cell, where there is room.
@@ -41,6 +49,7 @@ pub(crate) struct BodyPage {
     read: OriginShown,
     edit: Option<BodyEdit>,
     audition: Audition,
+    tiles: Tiles,
 }
 
 impl BodyPage {
@@ -57,11 +66,106 @@ impl BodyPage {
         }
     }
 
+    /// The body or joint whose numbers are shown, by its name on the way of the sound.
+    pub(crate) fn chosen(&self) -> &'static str {
+        match self.part {
+            Part::First => "Body",
+            Part::Second => "Body 2",
+            Part::Joint => "Joint",
+        }
+    }
+
+    /// Turns to a body or joint by that name.
+    pub(crate) fn turn_to(&mut self, name: &str) {
+        self.part = match name {
+            "Body 2" => Part::Second,
+            "Joint" => Part::Joint,
+            _ => Part::First,
+        };
+    }
+
+    /// Shows what the body of a preset may be and be made of, as pictures, if there is room for them above something so high. Returns
+    /// where they end, and a message.
+    pub(crate) fn strips(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        below: f32,
+        shown: &Shown,
+        controls: &mut Controls,
+    ) -> (f32, Option<String>) {
+        let end = rect.top() + TILES[0] + LINE_OF_DISCS;
+        if shown.preset().is_none() || rect.bottom() - end < below {
+            return (rect.top(), None);
+        }
+        let (now, link) = (ui.input(|input| input.time), controls.params.link());
+        self.audition.follow_time(now, link);
+        self.audition.request_end(ui);
+        let origin = self.read.get(shown);
+        let picked = self.things(ui, rect, (TILES[0], Part::First), &origin, shown, controls);
+        (end, picked.and_then(|picked| self.make(ui, &origin, picked, shown, controls)))
+    }
+
+    /// Shows models and materials as pictures, the models in a line or two of this height. Returns the changed body and the name of the
+    /// undo step.
+    fn things(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        (height, part): (f32, Part),
+        origin: &Origin,
+        shown: &Shown,
+        controls: &mut Controls,
+    ) -> Option<(Origin, String)> {
+        let (body, mut picked) = (part.body(origin), None);
+        let rows = if height > TILES[0] { 2 } else { 1 };
+        let columns = MODELS.len().div_ceil(rows);
+        let size = vec2(rect.width() / columns as f32, height / rows as f32);
+        for place in 0..MODELS.len() {
+            let offset = vec2((place % columns) as f32, (place / columns) as f32) * size;
+            let tile = Rect::from_min_size(rect.min + offset, size - vec2(4.0, 4.0));
+            if let Some(id) = self.tiles.show(ui, tile, place, body.map(|body| &body.model), controls) {
+                let changed = origin.with_model(part == Part::Second, Model::find(id));
+                picked = Some((changed, format!("model {}", model_name(id))));
+            }
+        }
+        let size = vec2(rect.width() / DISCS.len() as f32, LINE_OF_DISCS);
+        // A table of modes has no material: to choose one is to make it the body as which it is drawn.
+        let mut made = if part == Part::First { suggestion(origin, shown).1 } else { origin.clone() };
+        let help = if body.is_some() { "Make it of this material." } else { TAKES };
+        for (place, id) in DISCS.into_iter().enumerate() {
+            let at = Rect::from_min_size(rect.min + vec2(place as f32 * size.x, height), size);
+            let is_now = body.is_some_and(|body| body.material.id == id);
+            if disc(ui, at, id, (is_now, help), controls)
+                && let Some(material) = MATERIALS.iter().find(|material| material.id == id)
+                && let Some(body) = part.body_mut(&mut made)
+            {
+                body.material = *material;
+                picked = Some((made.clone(), format!("material {id}")));
+            }
+        }
+        picked
+    }
+
+    /// Makes the sound from another body, and strikes it. Returns a message.
+    fn make(
+        &mut self,
+        ui: &Ui,
+        origin: &Origin,
+        (changed, what): (Origin, String),
+        shown: &Shown,
+        controls: &mut Controls,
+    ) -> Option<String> {
+        self.leave(controls);
+        let message = BodyEdit::make(origin, changed, what, shown.loaded(), controls).err();
+        let now = ui.input(|input| input.time);
+        self.audition.strike(shown.guide().home, VELOCITY, now, controls.params.link());
+        message
+    }
+
     /// Shows the page. Returns a message.
     pub(crate) fn show(&mut self, ui: &mut Ui, rect: Rect, shown: &Shown, controls: &mut Controls) -> Option<String> {
-        let palette = controls.palette;
-        palette.paint_panel(ui.painter(), rect);
-        let inner = rect.shrink(PADDING);
+        let inner = rect;
         if shown.preset().is_none() {
             offer_pad(ui, inner, shown, controls);
             return None;
@@ -77,17 +181,20 @@ impl BodyPage {
         if origin.pair().is_none() && self.part == Part::Joint || origin == Origin::Table {
             self.part = Part::First;
         }
-        let side = inner.with_max_x(inner.left() + SIDE);
-        let rest = inner.with_min_x(side.right() + GAP);
-        let mut picked = self.side(ui, side, &origin, controls);
+        let [wide, least_width, least_height] = PICTURED;
+        let is_pictured = inner.width() >= least_width && inner.height() >= least_height;
+        let side = inner.with_max_x(inner.left() + if is_pictured { wide } else { SIDE });
+        let rest = inner.with_min_x(side.right() + 2.0 * GAP);
+        let mut picked = self.side(ui, side, is_pictured, &origin, controls);
+        if is_pictured && self.part != Part::Joint {
+            let below = side.with_min_y(side.top() + 3.0 * ROW + GAP);
+            picked = self.things(ui, below, (TILES[1], self.part), &origin, shown, controls).or(picked);
+        }
         if origin == Origin::Table {
             picked = offer(ui, rest, LACKS, (&origin, shown), controls).or(picked);
         }
-        if let Some((changed, what)) = picked {
-            self.leave(controls);
-            let message = BodyEdit::make(&origin, changed, what, shown.loaded(), controls).err();
-            self.audition.strike(shown.guide().home, VELOCITY, now, controls.params.link());
-            return message;
+        if let Some(picked) = picked {
+            return self.make(ui, &origin, picked, shown, controls);
         }
         if origin == Origin::Table { None } else { self.numbers(ui, rest, &origin, shown, controls) }
     }
@@ -101,7 +208,14 @@ impl BodyPage {
     }
 
     /// Shows which body is edited, its model and its material. Returns the changed body and the name of the undo step.
-    fn side(&mut self, ui: &Ui, rect: Rect, origin: &Origin, controls: &mut Controls) -> Option<(Origin, String)> {
+    fn side(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        is_pictured: bool,
+        origin: &Origin,
+        controls: &mut Controls,
+    ) -> Option<(Origin, String)> {
         // All four rows are within a small window too.
         let tall = ROW.min((rect.height() + 4.0) / 4.0);
         let row = |place: usize| {
@@ -168,7 +282,12 @@ impl BodyPage {
         }
         if origin.pair().is_some() {
             let look = if body.follows_key { Look::On } else { Look::Off };
-            if button(ui, row(3), "Follows the keys", "The body follows the keys", look, palette).clicked() {
+            let at = if is_pictured {
+                Rect::from_min_size(pos2(rect.left(), rect.bottom() - tall), row(0).size())
+            } else {
+                row(3)
+            };
+            if button(ui, at, "Follows the keys", "The body follows the keys", look, palette).clicked() {
                 let mut changed = origin.clone();
                 let body = self.part.body_mut(&mut changed)?;
                 body.follows_key = !body.follows_key;
@@ -194,24 +313,35 @@ impl BodyPage {
             paragraph(ui.painter(), rect, text, SMALL, controls.palette.muted);
             return None;
         }
-        let rows = ((rect.height() / CELL[1]) as usize).max(1);
+        let rows = (((rect.height() - TITLE) / CELL[1]) as usize).max(1);
+        let of = |title: &str| numbers.iter().filter(|number| number.group() == title).collect::<Vec<_>>();
+        let groups: Vec<(&str, Vec<&Number>)> = GROUPS.into_iter().map(|title| (title, of(title))).collect();
+        let across = |count: usize| count.div_ceil(rows) as f32;
+        let columns: f32 = groups.iter().map(|(_, numbers)| across(numbers.len())).sum();
         let (mut is_held, mut is_dragged) = (false, false);
         let mut inner = ui.new_child(UiBuilder::new().id_salt("body numbers").max_rect(rect));
         ScrollArea::horizontal().auto_shrink(false).show(&mut inner, |ui| {
-            let columns = numbers.len().div_ceil(rows) as f32;
             let cell = vec2((rect.width() / columns).clamp(CELL[0], WIDEST).floor(), CELL[1]);
-            let (area, _) = ui.allocate_exact_size(vec2(columns, rows as f32) * cell, Sense::hover());
-            for (place, number) in numbers.iter().enumerate() {
-                let corner = area.min + vec2((place / rows) as f32, (place % rows) as f32) * cell;
-                let (response, value) = show(ui, Rect::from_min_size(corner, cell), number, controls);
-                is_dragged |= response.dragged();
-                is_held |= is_dragged || response.has_focus();
-                if response.changed() && value != number.value {
-                    let mut changed = self.edit.as_ref().map_or(origin, BodyEdit::origin).clone();
-                    self.part.set(&mut changed, number.name, value);
-                    let what = format!("{} {}", number.about()[0], number.written(value));
-                    let edit = self.edit.get_or_insert_with(|| BodyEdit::begin(origin, shown.loaded(), controls));
-                    edit.change(changed, what);
+            let (area, _) = ui.allocate_exact_size(vec2(columns * cell.x, rect.height()), Sense::hover());
+            let mut left = area.left();
+            for (title, numbers) in groups {
+                let head = Rect::from_min_size(pos2(left, area.top()), vec2(across(numbers.len()) * cell.x, TITLE));
+                left = head.right();
+                if !numbers.is_empty() {
+                    line(ui.painter(), head, Align2::LEFT_CENTER, title, SMALL, controls.palette.text);
+                }
+                for (place, number) in numbers.into_iter().enumerate() {
+                    let corner = head.left_bottom() + vec2((place / rows) as f32, (place % rows) as f32) * cell;
+                    let (response, value) = show(ui, Rect::from_min_size(corner, cell), number, controls);
+                    is_dragged |= response.dragged();
+                    is_held |= is_dragged || response.has_focus();
+                    if response.changed() && value != number.value {
+                        let mut changed = self.edit.as_ref().map_or(origin, BodyEdit::origin).clone();
+                        self.part.set(&mut changed, number.name, value);
+                        let what = format!("{} {}", number.about()[0], number.written(value));
+                        let edit = self.edit.get_or_insert_with(|| BodyEdit::begin(origin, shown.loaded(), controls));
+                        edit.change(changed, what);
+                    }
                 }
             }
         });

@@ -75,8 +75,6 @@ pub(super) struct Interaction {
     /// The parameter that waits for a source of a route.
     pub(super) learning: Option<Learning>,
     pub(super) binding: Option<Binding>,
-    /// The parameter that the user has moved last, until somebody has looked.
-    pub(super) touched: Option<usize>,
     /// A message about what the user has done in this pass.
     pub(super) said: Option<Said>,
     /// What is to be chosen in the list of files, which opens for it.
@@ -108,6 +106,8 @@ impl Hint {
 /// The context of every widget, during one pass.
 pub(super) struct Controls<'a> {
     pub(super) params: &'a SprungParams,
+    /// Whether a preset is shown, and not a kit.
+    pub(super) is_preset: bool,
     /// In a kit of several sounds, whose own values the knobs move, the one that is shown.
     pub(super) moved: Option<Arc<Sound>>,
     pub(super) host: &'a GuiContext,
@@ -205,7 +205,6 @@ impl Controls<'_> {
     /// Moves a knob; [`Controls::release`] ends the gesture.
     pub(super) fn turn(&mut self, info: &ParamInfo, position: f64) {
         let index = info.param as usize;
-        self.interaction.touched = Some(index);
         if self.interaction.gestures.moving() != Some(index) {
             self.release();
             self.history.begin(self.params);
@@ -242,7 +241,6 @@ impl Controls<'_> {
         self.history.begin(self.params);
         for (param, value) in &values {
             let position = param.info().normalise(*value) as f32;
-            self.interaction.touched = Some(*param as usize);
             self.interaction.gestures.set(self.params, self.host, *param as usize, position);
         }
         let moved: Vec<usize> = values.iter().map(|(param, _)| *param as usize).collect();

@@ -1,21 +1,30 @@
 //! Draws the last frames of the sound as a waveform, and their spectrum.
 
 use super::spectrum::{self, FLOOR};
+use crate::editor::controls::Controls;
 use crate::editor::theme::{GAP, Palette, SMALL};
 use crate::editor::widgets::text::line;
-use egui::{Align2, Painter, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
+use egui::{Align2, Painter, Rect, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
 use sprung::internals::display::SCOPE_FRAMES;
 use sprung::units::semitones_from_ratio;
 
 /// Number of frames that the waveform shows: half of those stored, so that it can begin at a zero crossing.
-pub(super) const SHOWN: usize = SCOPE_FRAMES / 2;
+const SHOWN: usize = SCOPE_FRAMES / 2;
 
 /// Lowest and highest frequency of the spectrum, in Hz.
 const RANGE: [f64; 2] = [20.0, 20_000.0];
 
+/// Shows both. Returns what is said of them.
+pub(crate) fn show(ui: &Ui, rect: Rect, controls: &Controls) -> String {
+    let link = controls.params.link();
+    let rate = link.sample_rate();
+    paint(ui.painter(), rect, &link.telemetry.scope().read(), rate, controls.palette);
+    if rate == 0 { String::new() } else { format!("{:.0} ms", SHOWN as f32 * 1000.0 / rate as f32) }
+}
+
 /// Draws both; the spectrum only if the sample rate is known. The spectrum is below the waveform if there is room,
 /// otherwise to its right.
-pub(super) fn paint(painter: &Painter, rect: Rect, frames: &[f32; SCOPE_FRAMES], rate: u32, palette: &Palette) {
+fn paint(painter: &Painter, rect: Rect, frames: &[f32; SCOPE_FRAMES], rate: u32, palette: &Palette) {
     if rate == 0 {
         return waveform(painter, rect, frames, palette);
     }
@@ -34,6 +43,17 @@ fn waveform(painter: &Painter, rect: Rect, frames: &[f32; SCOPE_FRAMES], palette
     let grid = Stroke::new(1.0, palette.line);
     painter.hline(rect.x_range(), painter.round_to_pixel_center(rect.center().y), grid);
     painter.rect_stroke(rect, 2.0, grid, StrokeKind::Inside);
+    let peak = trace(painter, rect, frames, palette);
+    let text = if peak > 1e-6 {
+        format!("peak {:.1} dBFS", sprung::units::db_from_gain(f64::from(peak)))
+    } else {
+        "Play a note to see it.".to_owned()
+    };
+    line(painter, rect.shrink(4.0), Align2::RIGHT_TOP, &text, SMALL, palette.muted);
+}
+
+/// Draws the waveform alone. Returns its peak.
+pub(crate) fn trace(painter: &Painter, rect: Rect, frames: &[f32; SCOPE_FRAMES], palette: &Palette) -> f32 {
     // Starts at a rising zero crossing, so that the picture of a steady tone stands still.
     let start = (1..SHOWN).find(|frame| frames[frame - 1] < 0.0 && frames[*frame] >= 0.0).unwrap_or(0);
     let shown = &frames[start..start + SHOWN];
@@ -44,12 +64,7 @@ fn waveform(painter: &Painter, rect: Rect, frames: &[f32; SCOPE_FRAMES], palette
         pos2(x, (rect.center().y - frame * scale).clamp(rect.top(), rect.bottom()))
     };
     painter.add(Shape::line(shown.iter().enumerate().map(point).collect(), Stroke::new(1.5, palette.accent)));
-    let text = if peak > 1e-6 {
-        format!("peak {:.1} dBFS", sprung::units::db_from_gain(f64::from(peak)))
-    } else {
-        "Play a note to see it.".to_owned()
-    };
-    line(painter, rect.shrink(4.0), Align2::RIGHT_TOP, &text, SMALL, palette.muted);
+    peak
 }
 
 /// Draws the levels of bands of equal width in Hz on a logarithmic frequency axis.

@@ -10,15 +10,13 @@ use crate::editor::controls::gestures::touch;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
-use crate::editor::theme::{PADDING, SMALL, TITLE_HEIGHT};
+use crate::editor::theme::SMALL;
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::{fitting, line};
 use crate::link::Link;
 use axes::Axes;
 use drag::{Drag, Step};
-use egui::{
-    Align2, CursorIcon, Id, PointerButton, Popup, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo, pos2, vec2,
-};
+use egui::{Align2, CursorIcon, Id, PointerButton, Popup, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
 use face::Face;
 use snap::Snap;
 use sprung::params::Param;
@@ -59,8 +57,16 @@ impl ModesView {
         self.audition.release(link);
     }
 
-    /// Shows the modes of a sound; changes are played on its home key. The modes of kits cannot be changed.
-    pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, shown: &Shown, energies: &[f32], controls: &mut Controls) {
+    /// Shows the modes of a sound, and beside its tabs what can be done with them; changes are played on its home key. The modes of kits
+    /// cannot be changed.
+    pub(super) fn show(
+        &mut self,
+        ui: &Ui,
+        [head, rect]: [Rect; 2],
+        shown: &Shown,
+        energies: &[f32],
+        controls: &mut Controls,
+    ) {
         let palette = controls.palette;
         let (patch, is_editable) = (shown.patch(), shown.preset().is_some());
         self.selected.take_if(|(_, count)| *count != patch.modes.as_slice().len());
@@ -69,18 +75,15 @@ impl ModesView {
         if !is_editable || self.drag.as_ref().is_some_and(is_other) {
             self.cancel(controls);
         }
-        palette.paint_panel(ui.painter(), rect);
-        let title =
-            Rect::from_min_size(rect.min + vec2(PADDING, 2.0), vec2(rect.width() - 2.0 * PADDING, TITLE_HEIGHT));
-        self.title(ui, title, patch, is_editable, controls);
-        let area = Rect::from_min_max(rect.min + vec2(36.0, TITLE_HEIGHT + 8.0), rect.max - vec2(PADDING + 4.0, 20.0));
+        self.title(ui, head, patch, is_editable, controls);
+        let area = Rect::from_min_max(rect.min + vec2(28.0, 6.0), rect.max - vec2(4.0, 16.0));
         let axes = match self.axes.filter(|_| self.drag.is_some()) {
             Some(axes) => axes.on(area),
             None => Axes::around(patch.modes.as_slice(), area),
         };
         self.axes = Some(axes);
         let response = ui.interact(area.expand(8.0), Id::unique("modes"), Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Modes"));
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Modes of the body"));
         if is_editable {
             self.edit(ui, &response, &axes, shown, controls);
         }
@@ -100,15 +103,15 @@ impl ModesView {
 
     fn title(&mut self, ui: &Ui, rect: Rect, patch: &Patch, is_editable: bool, controls: &Controls) {
         let palette = controls.palette;
-        let title = line(ui.painter(), rect, Align2::LEFT_CENTER, "MODES", SMALL, palette.muted);
-        let snap = Rect::from_min_max(pos2(rect.right() - 78.0, rect.top() + 1.0), rect.max);
-        let rest = Rect::from_min_max(pos2(title.right() + 12.0, rect.top()), pos2(snap.left() - 8.0, rect.bottom()));
+        let snap = rect.with_min_x(rect.right() - 78.0);
+        let rest = rect.with_max_x(snap.left() - 8.0);
         let help = match (is_editable, patch.modes.origin().is_some()) {
-            (false, _) => ["of the pad that was struck or chosen last", "of the chosen pad"],
-            (true, true) => ["from a model; the first change makes them a table of their own", "from a model"],
+            (false, _) => ["of the pad that was struck or chosen last", "of the chosen pad", ""],
+            (true, true) => ["from a model; the first change makes them a table of their own", "from a model", ""],
             (true, false) => [
                 "drag: level, ratio   Alt: decay   Ctrl: pan   Shift: fine   right-drag: draw   double-click: add, remove",
                 "drag: level, ratio   Alt: decay   Ctrl: pan",
+                "",
             ],
         };
         let help = fitting(ui.painter(), &help, SMALL, rest.width());

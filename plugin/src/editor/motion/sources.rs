@@ -91,6 +91,12 @@ pub(in crate::editor) fn show_line(ui: &Ui, rect: Rect, sources: &[Source], show
     }
 }
 
+/// The width of a line that has all of these sources.
+pub(in crate::editor) fn line_width(ui: &Ui, sources: &[Source], shown: &Shown) -> f32 {
+    let wide = |source: &Source| SPACE + chip_width(ui, (*source, &name(*source, shown)), shown);
+    (width(ui.painter(), DRAG, SMALL) + 3.0 * SPACE + sources.iter().map(wide).sum::<f32>()).ceil()
+}
+
 /// Shows the sources. Returns the one with knobs that was clicked.
 pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, controls: &mut Controls) -> Option<Source> {
     let mut clicked = None;

@@ -1,45 +1,28 @@
-//! The parameters by section, some sections on each page.
+//! The parameters of a section: their names, their knobs, and a picture of what they do together.
 
 use super::curves;
 use crate::editor::body::face;
 use crate::editor::controls::Controls;
-use crate::editor::lamps::{self, Lamp, has_effect, is_raised};
+use crate::editor::lamps;
 use crate::editor::play::stage;
 use crate::editor::routes::Ring;
-use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, RADIUS, SMALL, TITLE_HEIGHT};
+use crate::editor::theme::{GAP, KNOB, SMALL};
 use crate::editor::widgets::choice;
 use crate::editor::widgets::knob;
 use crate::editor::widgets::text::{fitting, line};
-use egui::{Align2, Painter, Rect, ScrollArea, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, Painter, Rect, Ui, vec2};
 use sprung::params::{Choice as _, PARAMS, Param, ParamInfo, Space, Unit};
 use sprung::patch::Patch;
 use sprung::preset::Guide;
 use sprung_picture::Figure;
 
-/// The sections of each page, in the order in which sound is made.
-pub(super) const PAGES: [&[&str]; 4] = [
-    &["Mallet", "Pluck", "Noise", "Bow", "Breath", "Input", "Strike"],
-    &["Body", "Rattle", "Pitch"],
-    &["Soundbox", "Strings", "Tremolo", "Drive", "Tone", "Space", "Output"],
-    &["Voices", "Control"],
-];
-/// Width of a picture at the left of the knobs, with the gap after it; and the least of one in their last row.
-const PICTURE: f32 = 132.0;
-const SMALLEST: f32 = 50.0;
 /// Least width of a cell, in which each name and each choice is whole, and the space at its left and right.
-const LEAST: f32 = 73.0;
+pub(super) const LEAST: f32 = 73.0;
 const BESIDE: f32 = 3.0;
 /// Said of the knobs of a kit.
 pub(in crate::editor) const ADDED: &str = "added to what each pad has";
 /// Said below a picture of nothing.
 const CHOOSE: &str = "none: choose a type";
-/// How much of the brightness is left of a part that is off, and of a knob that has no effect.
-const OFF: f32 = 0.7;
-
-/// Whether a page shows a section.
-pub(super) fn shows(page: usize, section: &str) -> bool {
-    PAGES.get(page).is_some_and(|sections| sections.contains(&section))
-}
 
 /// The parameters of a section.
 pub(in crate::editor) type Section = &'static [ParamInfo];
@@ -64,85 +47,6 @@ fn short_name(info: &ParamInfo, guide: &Guide) -> String {
     }
 }
 
-/// Shows a page of sections of a patch, whole for a kit: of parts of a preset that are off, only the selected one, which `is_new` if it must be scrolled to.
-pub(super) fn show(
-    ui: &mut Ui,
-    rect: Rect,
-    names: &'static [&'static str],
-    (selected, is_new): (&str, bool),
-    (patch, guide, is_preset, figure): (&Patch, &Guide, bool, &Figure),
-    controls: &mut Controls,
-) {
-    // What a route can raise is not off.
-    let acts = |lamp: &Lamp| !is_preset || lamp.is_on(controls) || is_raised(lamp.params(), patch, controls);
-    let is_on = |section: Section| lamps::of(section[0].section).is_none_or(acts);
-    let shown: Vec<(Section, bool)> = sections(names)
-        .map(|section| (section, is_on(section)))
-        .filter(|(section, is_on)| *is_on || section[0].section == selected)
-        .collect();
-    let rows = (((rect.height() - TITLE_HEIGHT - PADDING) / CELL_HEIGHT) as usize).max(1);
-    let columns = |section: Section| section.len().div_ceil(rows);
-    let count: usize = shown.iter().map(|(section, _)| columns(section)).sum();
-    let gaps = shown.len() as f32 * (2.0 * PADDING + GAP) - GAP;
-    let (least, most) = (LEAST, CELL_WIDTH[1]);
-    // Pictures at the left of the knobs where there is room, the selected part's first.
-    let room = (rect.width() - gaps - count as f32 * least) / PICTURE;
-    let pictures = if rows > 1 { room.max(0.0) as usize } else { 0 };
-    let is_other = |(section, _): &&(Section, bool)| section[0].section != selected;
-    let (others, first): (Vec<_>, Vec<_>) =
-        shown.iter().filter(|(section, _)| has_picture(section)).partition(is_other);
-    let large: Vec<&str> = first.iter().chain(&others).take(pictures).map(|(section, _)| section[0].section).collect();
-    let aside = large.len() as f32 * PICTURE;
-    let cell_width = ((rect.width() - gaps - aside) / count.max(1) as f32).floor().clamp(least, most);
-    let width = count as f32 * cell_width + gaps + aside;
-    let mut inner = ui.new_child(UiBuilder::new().id_salt("sections").max_rect(rect));
-    ScrollArea::horizontal().id_salt(names).auto_shrink(false).show(&mut inner, |ui| {
-        let (area, _) = ui.allocate_exact_size(vec2(width, rect.height()), egui::Sense::hover());
-        let mut left = area.left();
-        for (section, is_on) in shown {
-            ui.set_opacity(if is_on { 1.0 } else { OFF });
-            let is_large = large.contains(&section[0].section);
-            let aside = if is_large { PICTURE } else { 0.0 };
-            let size = vec2(columns(section) as f32 * cell_width + 2.0 * PADDING + aside, area.height());
-            let panel = Rect::from_min_size(pos2(left, area.top()), size);
-            left = panel.right() + GAP;
-            if is_new && section[0].section == selected {
-                ui.scroll_to_rect(panel, None);
-            }
-            let palette = controls.palette;
-            palette.paint_panel(ui.painter(), panel);
-            if section[0].section == selected {
-                let edge = Stroke::new(1.0, palette.accent.gamma_multiply(0.6));
-                ui.painter().rect_stroke(panel, RADIUS, edge, StrokeKind::Inside);
-            }
-            let title = Rect::from_min_size(panel.min + vec2(PADDING, 2.0), vec2(size.x - PADDING, TITLE_HEIGHT - 2.0));
-            show_title(ui.painter(), title, section, controls);
-            if is_large {
-                let side = PICTURE - GAP;
-                let height = (panel.height() - TITLE_HEIGHT - PADDING).min(1.15 * side);
-                let place = Rect::from_min_size(panel.min + vec2(PADDING, TITLE_HEIGHT), vec2(side, height));
-                curves::frame(ui.painter(), place, palette, |place| {
-                    picture(ui.painter(), place, section, figure, controls)
-                });
-            }
-            // A picture in the last row if it has room for one.
-            let free = (columns(section) - section.len() % columns(section)) % columns(section);
-            if free > 0 && !is_large {
-                let row = panel.top() + TITLE_HEIGHT + (section.len() / columns(section)) as f32 * CELL_HEIGHT;
-                let left = panel.right() - PADDING - free as f32 * cell_width;
-                let place = Rect::from_min_size(pos2(left, row), vec2(free as f32 * cell_width, KNOB + 14.0));
-                let picture = place.shrink2(vec2(6.0, 2.0));
-                if picture.width() > SMALLEST {
-                    curves::paint(ui.painter(), picture, section, controls);
-                }
-            }
-            let corner = panel.min + vec2(PADDING + aside, TITLE_HEIGHT);
-            let grid = Rect::from_min_size(corner, vec2(cell_width, CELL_HEIGHT));
-            knobs(ui, grid, columns(section), section, (patch, guide), controls);
-        }
-    });
-}
-
 /// Shows the name of a section, and where its knobs move each pad's own values, that they do.
 pub(in crate::editor) fn show_title(painter: &Painter, rect: Rect, section: Section, controls: &Controls) {
     let muted = controls.palette.muted;
@@ -154,8 +58,8 @@ pub(in crate::editor) fn show_title(painter: &Painter, rect: Rect, section: Sect
     }
 }
 
-/// Whether a section has a large picture.
-fn has_picture(section: Section) -> bool {
+/// Whether a section has a picture.
+pub(super) fn has_picture(section: Section) -> bool {
     !matches!(section[0].section, "Input" | "Voices" | "Control")
 }
 
@@ -202,41 +106,62 @@ pub(in crate::editor) fn knobs(
 ) {
     for (place, info) in section.iter().enumerate() {
         let offset = vec2((place % columns) as f32 * first.width(), (place / columns) as f32 * first.height());
-        let cell = Rect::from_min_size(first.min + offset, first.size() - vec2(0.0, 4.0)).shrink2(vec2(BESIDE, 0.0));
-        let ring = Ring::of(info, &patch.routes, controls);
-        let name = short_name(info, guide);
-        let opacity = ui.opacity();
-        ui.set_opacity(if has_effect(info, patch, controls) { opacity } else { opacity.min(OFF) });
+        let cell = Rect::from_min_size(first.min + offset, first.size() - vec2(0.0, 4.0));
+        knob_at(ui, cell, info, (patch, guide), controls);
+    }
+}
+
+/// Shows a parameter in a cell.
+pub(super) fn knob_at(
+    ui: &mut Ui,
+    cell: Rect,
+    info: &'static ParamInfo,
+    (patch, guide): (&Patch, &Guide),
+    controls: &mut Controls,
+) {
+    let ring = Ring::of(info, &patch.routes, controls);
+    let (name, cell) = (short_name(info, guide), cell.shrink2(vec2(BESIDE, 0.0)));
+    lamps::dimmed(ui, cell, info, patch, controls, |ui, controls| {
         if info.unit == Unit::Choice {
             choice::show(ui, cell, info, &name, controls);
         } else {
             knob::show(ui, (cell, KNOB), info, &name, &ring, controls);
         }
-        ui.set_opacity(opacity);
-    }
+    });
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::editor::motion::sources::section_of;
+    use crate::editor::pages::parts::{Part, groups};
     use crate::editor::widgets::text;
     use sprung::patch::routes::Source;
 
-    #[test]
-    fn every_parameter_is_on_one_page() {
-        // Those of sources are on the face of what moves, as are the routes.
+    /// The sections of sources, whose knobs are on the face of what moves, as those of routes are.
+    fn moving() -> Vec<&'static str> {
         let mut moving: Vec<&str> = Source::ALL.iter().filter_map(|source| section_of(*source)).collect();
         moving.dedup();
-        let pages = || PAGES.into_iter().chain([&moving[..], &["Routes"]]);
-        let mut found: Vec<&str> = pages().flat_map(sections).flatten().map(|info| info.id).collect();
+        moving
+    }
+
+    /// The knobs of all parts of the sound's way.
+    fn parts() -> impl Iterator<Item = &'static ParamInfo> {
+        let others = moving();
+        let is_part = move |section: &Part| !others.contains(section) && !["Control", "Routes"].contains(section);
+        let parts = PARAMS.chunk_by(|a, b| a.section == b.section).map(|rows| rows[0].section).filter(is_part);
+        parts.flat_map(groups).flat_map(|(_, knobs)| knobs)
+    }
+
+    #[test]
+    fn every_parameter_is_in_one_place() {
+        let elsewhere = [&moving()[..], &["Routes"]].concat();
+        let mut found: Vec<&str> = parts().chain(sections(&elsewhere).flatten()).map(|info| info.id).collect();
         let mut all: Vec<&str> = PARAMS.iter().map(|info| info.id).collect();
         found.sort_unstable();
         all.sort_unstable();
         assert_eq!(found, all);
-        for names in pages() {
-            assert_eq!(sections(names).count(), names.len(), "{names:?}");
-        }
+        assert_eq!(sections(&elsewhere).count(), elsewhere.len());
     }
 
     #[test]
@@ -245,7 +170,7 @@ mod tests {
         let mut cut = Vec::new();
         let mut output = context.run_ui(egui::RawInput::default(), |ui| {
             let width = |text: &str| text::least_width(ui.painter(), text, SMALL);
-            for info in PAGES.into_iter().flat_map(sections).flatten() {
+            for info in parts() {
                 let name = short_name(info, &Guide::default());
                 let wide = info
                     .choices

@@ -5,7 +5,7 @@ use crate::editor::controls::gestures::change;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint, Pick, Said};
 use crate::editor::keyboard::grid::{Cell, KeyGrid};
-use crate::editor::theme::{GAP, PADDING, SMALL, font};
+use crate::editor::theme::{GAP, SMALL, font};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::{is_entered, line, name_field, paragraph};
@@ -45,8 +45,7 @@ impl TuningPage {
         controls: &mut Controls,
     ) -> Option<Said> {
         let palette = controls.palette;
-        palette.paint_panel(ui.painter(), rect);
-        let inner = rect.shrink(PADDING);
+        let inner = rect;
         let side = inner.with_max_x(inner.left() + SIDE);
         let own = shown.tuning();
         let (name, steps) = own.map_or((EQUAL_NAME.to_owned(), "12 steps".to_owned()), about);
@@ -118,7 +117,7 @@ fn written(hertz: f64) -> String {
 }
 
 /// The name of a scale, and its number of steps.
-fn about(own: &OwnTuning) -> (String, String) {
+pub(super) fn about(own: &OwnTuning) -> (String, String) {
     let mut lines = own.scale().lines().filter(|line| !line.starts_with('!')).map(str::trim);
     let name = lines.next().filter(|name| !name.is_empty()).unwrap_or("A scale without a name");
     (name.to_owned(), format!("{} steps", lines.next().unwrap_or_default()))

@@ -15,15 +15,14 @@ const ROW: f32 = 16.0;
 /// Shows the panel; `voices` is the number of sounding voices.
 pub(super) fn show(painter: &Painter, rect: Rect, voices: u32, controls: &Controls) {
     let palette = controls.palette;
-    palette.paint_panel(painter, rect);
-    let mut inner = rect.shrink(PADDING);
+    let mut inner = rect;
     if rect.width() >= WIDE {
         let list = inner.with_min_x(rect.center().x + PADDING);
         inner.set_right(rect.center().x - PADDING);
         show_notes(painter, list, controls);
     }
-    let title = Rect::from_min_size(rect.min + vec2(PADDING, 2.0), vec2(inner.width(), TITLE_HEIGHT - 2.0));
-    let text = line(painter, title, Align2::LEFT_CENTER, "SOUNDING", SMALL, palette.muted);
+    let title = Rect::from_min_size(inner.min, vec2(inner.width(), TITLE_HEIGHT - 2.0));
+    let text = line(painter, title, Align2::LEFT_CENTER, "Sounding", SMALL, palette.muted);
     let most = controls.value(Param::Voices.info()) as u32;
     let count = Rect::from_min_max(pos2(text.right() + 10.0, title.top()), title.max);
     line(painter, count, Align2::LEFT_CENTER, &format!("{voices} of {most}"), SMALL, palette.text);

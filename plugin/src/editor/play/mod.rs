@@ -10,6 +10,7 @@ use crate::editor::body::view::{BodyView, velocity};
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
+use crate::editor::lamps;
 use crate::editor::motion::sources;
 use crate::editor::pages::sections::ADDED;
 use crate::editor::routes::Ring;
@@ -183,7 +184,9 @@ fn knobs(ui: &mut Ui, rect: Rect, [title, side]: [f32; 2], shown: &Shown, contro
             for (info, name) in knobs {
                 let cell = Rect::from_min_size(corner + vec2(0.0, title), vec2(width, cell_height(side) - 4.0));
                 let ring = Ring::of(info, &shown.patch().routes, controls);
-                knob::show(ui, (cell.shrink2(vec2(1.0, 0.0)), side), info, &name, &ring, controls);
+                lamps::dimmed(ui, cell, info, shown.patch(), controls, |ui, controls| {
+                    knob::show(ui, (cell.shrink2(vec2(1.0, 0.0)), side), info, &name, &ring, controls);
+                });
                 if ui.rect_contains_pointer(cell)
                     && let Some(effects) = effects(info, shown.patch(), controls)
                 {

@@ -125,6 +125,7 @@ fn keys_undo_and_redo_in_the_program_alone_and_search_no_sound_where_a_path_is_t
 fn keys_zoom_and_open_the_manual_and_a_sound_that_was_not_saved_is_told_for_a_while() {
     let mut stage = stage("Church Bell", SIZE, 1.0, Theme::Dark);
     stage.host.is_alone.store(true, Relaxed);
+    stage.tab("Mallet");
     for (key, zoom) in [(Key::Plus, 125), (Key::Plus, 150), (Key::Minus, 125), (Key::Num0, 100)] {
         stage.harness.key_press_modifiers(Modifiers::COMMAND, key);
         stage.harness.run_steps(3);

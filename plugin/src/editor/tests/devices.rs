@@ -69,9 +69,9 @@ impl Stage {
 #[test]
 fn devices_are_a_page_of_their_own_that_is_closed() {
     let mut stage = page(SIZE, Theme::Dark);
-    assert!(stage.harness.query_by_label("Modes").is_none(), "no pictures of the sound are beside it");
+    assert!(stage.harness.query_by_label("Modes of the body").is_none(), "no pictures of the sound are beside it");
     stage.button("Close the devices");
-    assert!(stage.harness.query_by_label("Modes").is_some());
+    assert!(stage.harness.query_by_label("Modes of the body").is_some());
     stage.devices();
     stage.tab("Play");
     assert!(stage.harness.query_by_label("Strike").is_some());

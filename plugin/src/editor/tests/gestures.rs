@@ -13,7 +13,11 @@ use std::sync::atomic::Ordering::Relaxed;
 
 impl Stage {
     fn new() -> Self {
-        stage("Church Bell", SIZE, 1.0, Theme::Dark)
+        let mut stage = stage("Church Bell", SIZE, 1.0, Theme::Dark);
+        stage.tab("Mallet");
+        // The next click is none that follows this one.
+        stage.harness.run_steps(40);
+        stage
     }
 
     pub(super) fn at(&self, name: &str) -> Pos2 {
@@ -158,13 +162,14 @@ fn a_run_of_the_wheel_is_one_step_and_undo_moves_no_other_knob() {
 fn a_wheel_that_scrolls_a_page_turns_no_knob_until_the_pointer_rests_on_one() {
     // There the page is wider than the window.
     let mut stage = stage("Church Bell", LEAST_SIZE, 1.0, Theme::Dark);
-    let value = |stage: &Stage| stage.value(Param::MalletSpeed);
-    let left = |stage: &Stage| stage.at("Mallet speed").x;
+    stage.tab("Knobs");
+    let value = |stage: &Stage| stage.value(Param::Damper);
+    let left = |stage: &Stage| stage.at("Damper").x;
     let turn = |stage: &mut Stage, lines: f32| {
         stage.harness.event(wheel(lines));
         stage.harness.run_steps(40);
     };
-    let (before, at) = (value(&stage), stage.at("Mallet speed"));
+    let (before, at) = (value(&stage), stage.at("Damper"));
     stage.harness.event(Event::PointerMoved(at));
     stage.harness.step();
     turn(&mut stage, -1.0);
@@ -181,6 +186,7 @@ fn a_wheel_that_scrolls_a_page_turns_no_knob_until_the_pointer_rests_on_one() {
 #[test]
 fn a_value_is_typed_in_its_unit_and_nonsense_is_not_taken() {
     let mut stage = Stage::new();
+    stage.tab("Noise");
     let typed = |stage: &mut Stage, text: &str, key: Key| {
         stage.button("Type Noise time");
         stage.harness.event(Event::Text(text.to_owned()));

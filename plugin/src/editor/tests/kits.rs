@@ -332,6 +332,7 @@ fn a_pad_is_edited_and_put_back_and_each_is_one_step() {
     let alone = stage.params.state();
     assert_eq!(alone.values, heard.sounds[pad.sound].1.patch.values);
     // A change of the sound, and one that loads it anew.
+    stage.tab("Mallet");
     let knob = stage.at("Mallet hardness");
     stage.drag(knob, vec2(0.0, -22.0), Modifiers::NONE);
     stage.tab("Play");

@@ -67,6 +67,7 @@ fn escape_gives_up() {
 impl Band {
     /// Picks an entry of a knob's menu.
     fn pick(&mut self, name: &str, entry: &str) {
+        self.stage.tab("Mallet");
         self.stage.harness.get_by_role_and_label(Role::Slider, name).click_secondary();
         self.passes(3);
         self.stage.button(entry);

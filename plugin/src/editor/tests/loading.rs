@@ -89,6 +89,7 @@ fn undo_redo_and_the_other_version_do_not_cross_a_state_that_the_host_loads() {
 #[test]
 fn an_action_that_began_before_a_load_does_not_bring_the_former_sound_back() {
     let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    stage.tab("Mallet");
     let knob = stage.harness.get_by_role_and_label(egui::Role::Slider, "Mallet level").rect().center();
     stage.pointer(knob, true);
     stage.harness.event(Event::PointerMoved(knob + vec2(20.0, 0.0)));

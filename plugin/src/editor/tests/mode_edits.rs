@@ -17,7 +17,7 @@ impl Band {
     }
 
     fn axes(&self) -> Axes {
-        Axes::around(self.table().as_slice(), self.rect("Modes").shrink(8.0))
+        Axes::around(self.table().as_slice(), self.rect("Modes of the body").shrink(8.0))
     }
 
     /// Where the loudest mode is.
@@ -176,6 +176,7 @@ fn a_window_that_is_closed_lets_go_of_every_key_and_knob() {
     drop(stage.harness);
     assert_eq!((touches.pop(), touches.pop().ok()), (Ok(Touch::Up { key }), None));
     let mut band = Band::new("Glass Marimba", SIZE, Theme::Dark);
+    band.stage.tab("Mallet");
     let knob = band.stage.at("Mallet speed");
     band.press(knob, true);
     band.event(Event::PointerMoved(knob - vec2(0.0, 20.0)));
@@ -186,7 +187,7 @@ fn a_window_that_is_closed_lets_go_of_every_key_and_knob() {
 
 #[test]
 fn a_double_clicks_key_is_let_go_when_something_is_shown_over_the_modes() {
-    for opens in ["Browse", "Manual: exciters"] {
+    for opens in ["Browse", "Manual: bodies"] {
         let mut band = Band::new("Marimba", SIZE, Theme::Dark);
         let place = band.free();
         for pressed in [true, false, true, false] {

@@ -116,6 +116,7 @@ fn a_drag_of_the_strike_is_over_when_another_sound_is_loaded() {
 
 /// Pulls the mass by a share of the circle's radius, and lets go. Returns what was played.
 fn pull(band: &mut Band, share: f32) -> Vec<Touch> {
+    band.stage.tab("Phase");
     let rect = band.rect("Phase plane");
     let by = vec2(0.6, -0.8) * (share * (rect.width().min(rect.height()) / 2.0 - 4.0));
     band.heard.clear();

@@ -48,23 +48,20 @@ fn pictures_of_tuning_voices_and_manual_are_as_accepted() {
 }
 
 #[test]
-fn a_part_that_is_off_is_shown_only_while_selected_and_comes_back_as_it_was() {
+fn the_chosen_part_is_shown_alone_and_its_lamp_brings_it_back_as_it_was() {
     let mut band = Band::new("Church Bell", SIZE, Theme::Dark);
     let is_shown = |band: &Band, name| band.stage.harness.query_by_role_and_label(Role::Slider, name).is_some();
+    assert!(is_shown(&band, "Bloom") && band.stage.harness.query_by_label("Modes of the body").is_some());
     band.open("Noise");
-    assert!(is_shown(&band, "Noise colour") && is_shown(&band, "Mallet mass") && !is_shown(&band, "Bow force"));
+    assert!(is_shown(&band, "Noise colour") && !is_shown(&band, "Mallet mass") && !is_shown(&band, "Bloom"));
     let before = band.value(Param::NoiseLevel);
     band.click(Role::CheckBox, "Noise");
     assert_eq!(band.value(Param::NoiseLevel), Param::NoiseLevel.info().min);
-    assert!(is_shown(&band, "Noise colour"), "it is selected");
+    assert!(is_shown(&band, "Noise colour"), "it is chosen");
     band.click(Role::CheckBox, "Noise");
     assert_eq!(band.value(Param::NoiseLevel), before);
-    band.open("Bow");
-    assert!(is_shown(&band, "Noise colour") && is_shown(&band, "Mallet mass") && is_shown(&band, "Bow force"));
-    band.open("Mallet");
-    assert!(!is_shown(&band, "Bow force"));
     // What is turned down to nothing stays under the hand.
-    band.open("Bow");
+    band.open("Mallet");
     let knob = band.stage.harness.get_by_role_and_label(Role::Slider, "Mallet level").rect().center();
     band.press(knob, true);
     band.event(egui::Event::PointerMoved(knob + vec2(0.0, 400.0)));
@@ -78,10 +75,50 @@ fn a_part_that_is_off_is_shown_only_while_selected_and_comes_back_as_it_was() {
         band.undo();
     }
     assert!(band.value(Param::NoiseLevel) == before && band.value(Param::Drive) == 0.0);
+    // A tone is off where it passes all unchanged, which is in the middle of its knobs.
+    band.click(Role::CheckBox, "Tone");
+    assert_eq!(band.value(Param::ToneLow), 3.0);
+    band.click(Role::CheckBox, "Tone");
+    assert_eq!([Param::ToneLow, Param::ToneHigh].map(|param| band.value(param)), [0.0; 2]);
 }
 
 #[test]
-fn the_selected_part_is_seen_at_every_size() {
+fn the_bodies_of_a_pair_and_their_joint_are_chosen_on_the_way() {
+    let mut band = Band::new("Church Bell", SIZE, Theme::Dark);
+    let has = |band: &Band, name| band.stage.harness.query_by_role_and_label(Role::SpinButton, name).is_some();
+    band.open("Joint");
+    assert!(has(&band, "Heard of second") && !has(&band, "Strike place"));
+    band.open("Body 2");
+    assert!(has(&band, "Strike place") && !has(&band, "Heard of second"));
+    band.open("Body");
+    assert!(!has(&band, "Strike place") && band.stage.harness.query_by_label("Modes of the body").is_some());
+    let band = Band::new("Marimba", SIZE, Theme::Dark);
+    assert!(band.stage.harness.query_by_role_and_label(Role::Tab, "Joint").is_none());
+}
+
+#[test]
+fn all_of_the_chosen_part_can_be_reached_at_every_size() {
+    let parts = ["Pitch", "Voices", "Strike", "Mallet", "Noise", "Breath", "Rattle", "Strings", "Space", "Output"];
+    for size in [SIZE, LEAST_SIZE, [900, 620], [900, 500], [1600, 1000]] {
+        let mut stage = stage("Church Bell", size, 1.0, Theme::Dark);
+        for part in parts {
+            stage.tab(part);
+            let rail = stage.harness.get_by_label("Source velocity").rect().top();
+            let all = stage.harness.query_all_by_role(Role::Slider).map(|knob| knob.rect());
+            let sliders: Vec<_> = all.filter(|knob| knob.top() < rail).collect();
+            assert!(!sliders.is_empty(), "{part} {size:?}");
+            for (place, knob) in sliders.iter().enumerate() {
+                assert!(knob.bottom() < rail - 8.0, "{part} {size:?}: {knob}");
+                for other in &sliders[place + 1..] {
+                    assert!(!knob.shrink(0.1).intersects(*other), "{part} {size:?}: {knob} {other}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_chosen_part_is_seen_at_every_size() {
     let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
     stage.tab("Output");
     let [width, height] = LEAST_SIZE.map(|side| side as f32);
@@ -96,7 +133,7 @@ fn a_kit_has_no_lamps_and_all_knobs() {
     let mut band = Band::new("Acoustic Kit", SIZE, Theme::Dark);
     band.open("Pluck");
     let is_shown = |role, name| band.stage.harness.query_by_role_and_label(role, name).is_some();
-    assert!(is_shown(Role::Slider, "Pluck width") && is_shown(Role::Slider, "Bow force"));
+    assert!(is_shown(Role::Slider, "Pluck width") && band.stage.paints("added to what each pad has"));
     assert!(!is_shown(Role::CheckBox, "Pluck"));
 }
 
@@ -127,7 +164,7 @@ fn the_manual_opens_at_the_page_that_matters_and_escape_closes_it() {
         stage.harness.key_press(Key::Escape);
         stage.harness.run_steps(3);
         assert!(stage.harness.query_by_label("Close the manual").is_none());
-        stage.harness.get_by_label("Modes");
+        stage.harness.get_by_role_and_label(Role::Tab, tab);
     }
 }
 

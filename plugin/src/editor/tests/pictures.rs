@@ -117,19 +117,19 @@ pub(super) fn compare_exactly(name: &str, harness: &mut Harness) {
     check_in_steps(name, harness.render().unwrap(), 1);
 }
 
-/// Like [`compare`], for the area of the pages below the modes; other pictures show the rest.
+/// Like [`compare`], for the page between header and keyboard; other pictures show the rest.
 #[track_caller]
 pub(super) fn compare_page(name: &str, harness: &mut Harness) {
     harness.check_accessibility();
     check(name, page_of(&harness.render().unwrap(), 1.0, true));
 }
 
-/// The area of the pages in a window's picture, with the way of the sound above it or without.
+/// The chosen part in a window's picture, with the way of the sound above it and the sources below or without.
 fn page_of(window: &RgbaImage, scale: f32, has_way: bool) -> RgbaImage {
     let size = vec2(window.width() as f32, window.height() as f32) / scale;
     let layout = Layout::of(Rect::from_min_size(Pos2::ZERO, size));
-    let top = if has_way { layout.path.top() } else { layout.sections.top() };
-    let [top, bottom] = [top, layout.sections.bottom()].map(|y| (y * scale) as u32);
+    let ends = if has_way { layout.page() } else { layout.part }.y_range();
+    let [top, bottom] = [ends.min, ends.max].map(|y| (y * scale) as u32);
     image::imageops::crop_imm(window, 0, top, window.width(), bottom - top).to_image()
 }
 
@@ -206,7 +206,7 @@ fn pages(theme: Theme) {
     // One window for all pages: most of the time goes into its glyphs.
     for (size, scale, ending) in [(SIZE, 1.0, ""), (LEAST_SIZE, 1.0, "-least"), (SIZE, 2.0, "-twice")] {
         let mut harness = stage("Church Bell", size, scale, theme).harness;
-        for (page, name) in crate::editor::pages::path::names().enumerate() {
+        for (page, name) in crate::editor::pages::parts::names().into_iter().enumerate() {
             harness.get_by_role_and_label(egui::Role::Tab, name).click();
             harness.run_steps(3);
             let picture = format!("page-{page}-{}{ending}", theme.id());
@@ -263,7 +263,7 @@ fn pictures_are_small() {
 #[ignore = "takes half a minute"]
 fn pictures_of_browser_and_manual_in_every_theme_are_as_accepted() {
     for theme in Theme::ALL {
-        for (page, opens) in [("browser", "Browse"), ("manual", "Manual: exciters")] {
+        for (page, opens) in [("browser", "Browse"), ("manual", "Manual: bodies")] {
             let shown = |size, scale| {
                 let mut stage = stage("Marimba", size, scale, theme);
                 stage.harness.get_by_label(opens).click();

@@ -64,5 +64,6 @@ fn tab_leads_into_all_that_is_scrolled() {
     let below = stage.harness.get_by_role_and_label(Role::Slider, "LFO 1 rate").rect().top();
     stage.reach(Role::Button, page().with_max_y(below).with_min_x(page().left() + 150.0), Modifiers::NONE);
     let mut stage = facing(Face::Sound, "Acoustic Kit", LEAST_SIZE, 1.0, Theme::Dark);
+    stage.tab("Knobs");
     stage.reach(Role::Slider, page(), Modifiers::NONE);
 }

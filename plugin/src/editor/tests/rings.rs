@@ -28,6 +28,7 @@ fn band(size: [u32; 2], theme: Theme, routes: &[(Source, Param, f32)]) -> Band {
     view.theme = theme;
     band.stage.params.load(State::new(Playable::Preset(preset), 7, view).into());
     band.follow();
+    band.stage.tab("Mallet");
     band.passes(2);
     band
 }
@@ -93,11 +94,33 @@ fn an_oscillator_moves_the_mark_to_and_fro_while_the_note_sounds() {
     assert!(band.marks(Param::Pan).is_empty(), "it ends with the note");
 }
 
+/// A knob that does nothing is dimmed, and says what to switch on; what a route can raise is not off.
 #[test]
-fn a_part_that_a_route_can_raise_is_not_off() {
-    let band = band(SIZE, Theme::Dark, &[(Source::Wheel, Param::BowLevel, 50.0)]);
-    let knob = |name| band.stage.harness.query_by_role_and_label(egui::Role::Slider, name);
-    assert!(knob("Bow force").is_some() && knob("Pluck width").is_none());
+fn a_knob_without_effect_says_what_it_waits_for() {
+    for (sound, says) in [(&[][..], true), (&[(Source::Wheel, Param::BowLevel, 50.0)], false)] {
+        let mut band = band(SIZE, Theme::Dark, sound);
+        band.stage.tab("Bow");
+        band.event(Event::PointerMoved(band.face(Param::BowForce).center()));
+        assert_eq!(band.stage.paints("Bow is off: its lamp is on Sound and Play."), says);
+        band.event(Event::PointerMoved(band.face(Param::BowLevel).center()));
+        assert!(!band.stage.paints("its lamp is on"), "it is what switches it on");
+        band.stage.tab("Pitch");
+        band.event(Event::PointerMoved(band.face(Param::VibratoRate).center()));
+        assert!(band.stage.paints("Vibrato is 0 ct: turn it up and this matters."));
+    }
+}
+
+#[test]
+fn a_source_is_dragged_from_the_line_below_the_part_to_its_knob() {
+    let mut band = band(SIZE, Theme::Dark, &[]);
+    let from = band.rect("Source breath").center();
+    let to = band.face(Param::MalletSpeed).center();
+    band.press(from, true);
+    (1..=6).for_each(|step| band.event(Event::PointerMoved(from + (to - from) * (step as f32 / 6.0))));
+    band.press(to, false);
+    let routes = band.stage.params.loaded().kit.sounds()[0].patch().routes;
+    let (_, route) = routes.iter().next().unwrap();
+    assert_eq!((route.source, route.destination), (Source::Breath, Param::MalletSpeed));
 }
 
 #[test]

@@ -208,7 +208,10 @@ fn the_limiters_work_is_told_beside_the_level() {
     band.event(Event::PointerMoved(meter));
     band.passes(60);
     assert!(band.stage.params.link().telemetry.snapshot().lowered > 1.0);
-    assert!(band.stage.paints("the limiter takes"));
+    assert!(
+        band.stage.paints("the limiter takes") && band.stage.paints("limiter −"),
+        "in the status line, and at the meter"
+    );
 }
 
 #[test]
@@ -217,7 +220,7 @@ fn a_dragged_mode_changes_sounds_and_comes_back() {
     let before = band.stage.params.state();
     let modes = |band: &Band| band.stage.params.loaded().kit.sounds()[0].patch().modes.as_slice().to_vec();
     assert_eq!(modes(&band).len(), 1);
-    let area = band.rect("Modes");
+    let area = band.rect("Modes of the body");
     // Adds a second mode, at a place without one.
     let place = area.center();
     for _ in 0..2 {

@@ -239,8 +239,12 @@ pub(super) const PADDING: f32 = 8.0;
 pub(super) const RADIUS: u8 = 5;
 pub(super) const HEADER_HEIGHT: f32 = 30.0;
 pub(super) const TITLE_HEIGHT: f32 = 20.0;
-/// Height of the way of the sound: three parts, one below the other, without pictures and with them.
-pub(super) const PATH_HEIGHTS: [f32; 2] = [58.0, 98.0];
+/// Height of the way of the sound without pictures: three parts, one below the other. With pictures it is a share of the page's height
+/// between two ends.
+pub(super) const PATH_HEIGHT: f32 = 58.0;
+pub(super) const PICTURED_PATH: (f32, [f32; 2]) = (0.376, [184.0, 280.0]);
+/// Height of the line of sources below what is shown of the sound's chosen part.
+pub(super) const RAIL_HEIGHT: f32 = 22.0;
 pub(super) const STATUS_HEIGHT: f32 = 18.0;
 /// Diameter of a knob.
 pub(super) const KNOB: f32 = 34.0;

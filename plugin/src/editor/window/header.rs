@@ -1,6 +1,6 @@
 //! The top of the window: the sound's name, the buttons for it, and its level.
 
-use super::meter;
+use super::meter::{self, Level};
 use super::variation::{self, VariationRequest};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::host::extent;
@@ -85,8 +85,8 @@ pub(super) struct Header<'a> {
     pub(super) screen: Option<[f64; 2]>,
     /// Sections that variations leave as they are.
     pub(super) locked: &'a BTreeSet<&'static str>,
-    /// Levels of left and right, as shares of the meter's length.
-    pub(super) levels: [f32; 2],
+    /// Levels of left and right.
+    pub(super) levels: [Level; 2],
     /// By how many decibels the limiter lowers the sound.
     pub(super) lowered: f32,
 }

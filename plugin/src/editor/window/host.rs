@@ -91,8 +91,6 @@ impl Drop for Window {
         self.wheels.release(link);
         self.computer_keyboard.release(link);
         self.browser.release(link);
-        self.modes.release(link);
-        self.displays.release(link);
         self.play.release(link);
         self.pages.release(link);
         self.kit.release(link);

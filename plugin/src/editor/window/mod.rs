@@ -17,7 +17,6 @@ use crate::editor::controls::history::History;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, FRAME, Interaction, Said};
 use crate::editor::devices;
-use crate::editor::displays::Displays;
 use crate::editor::drops;
 use crate::editor::drops::fitting::Fitting;
 use crate::editor::host::extent;
@@ -27,7 +26,6 @@ use crate::editor::keyboard::piano::Piano;
 use crate::editor::keyboard::wheels::Wheels;
 use crate::editor::kit::{self, KitPage};
 use crate::editor::manual::Manual;
-use crate::editor::modes::ModesView;
 use crate::editor::motion::MotionPage;
 use crate::editor::pages::{self, Pages};
 use crate::editor::picker::{Picked, Picker};
@@ -80,8 +78,6 @@ pub(super) struct Window {
     history: History,
     shown: Shown,
     browser: Browser,
-    modes: ModesView,
-    displays: Displays,
     piano: Piano,
     wheels: Wheels,
     computer_keyboard: ComputerKeyboard,
@@ -148,8 +144,6 @@ impl Window {
             history,
             shown,
             browser: Browser::new(library),
-            modes: ModesView::default(),
-            displays: Displays::default(),
             piano: Piano::default(),
             wheels: Wheels::default(),
             computer_keyboard: ComputerKeyboard::default(),
@@ -235,6 +229,7 @@ impl Window {
         let (name, pad) = (params.name(), params.pad().map(|pad| pad.name()));
         let mut controls = Controls {
             params: &params,
+            is_preset: self.shown.preset().is_some(),
             moved: self.shown.one_of_several(),
             host,
             palette,
@@ -264,8 +259,6 @@ impl Window {
         let voices = if is_silent { 0 } else { snapshot.voices };
         let seen = self.over.is_none().then_some(self.face);
         if seen != Some(Face::Sound) {
-            self.modes.cancel(&mut controls);
-            self.displays.cancel(&mut controls);
             self.pages.leave(&mut controls);
         }
         if seen != Some(Face::Play) {
@@ -330,15 +323,11 @@ impl Window {
                     request => reads = request.is_some(),
                 }
             }
-            None => {
-                self.modes.show(ui, layout.modes, &self.shown, &energies, &mut controls);
-                self.displays.show(ui, layout.displays, &self.shown, (&energies, self.modes.selected()), &mut controls);
-                match self.pages.show(ui, &layout, &self.shown, (down, voices), &mut controls) {
-                    Some(pages::Request::Manual) => reads = true,
-                    Some(pages::Request::Say(message)) => self.news = Some(message),
-                    None => {}
-                }
-            }
+            None => match self.pages.show(ui, &layout, &self.shown, (&energies, down, voices), &mut controls) {
+                Some(pages::Request::Manual) => reads = true,
+                Some(pages::Request::Say(message)) => self.news = Some(message),
+                None => {}
+            },
         }
         if reads {
             self.manual.open(topic(self.over, self.face, &self.pages));
@@ -368,7 +357,7 @@ impl Window {
             said.extend(controls.history.take_lost().map(Ok));
             self.news = Some(joined(said).unwrap_or(Ok(String::new())));
         }
-        if let Some(message) = self.fitting.show(ui, layout.modes, &mut controls) {
+        if let Some(message) = self.fitting.show(ui, layout.page(), &mut controls) {
             self.news = Some(message);
         }
         self.browser.follow_time(now, &controls);

@@ -1,0 +1,99 @@
+//! What a body is and what it is made of as pictures to be clicked: a tile for each kind of body, a disc for each material.
+
+use super::face;
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::theme::{RADIUS, SMALL};
+use crate::editor::widgets::text::line;
+use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
+use sprung::sound::bodies::{Body, Model};
+use sprung_picture::play::MODELS;
+use sprung_picture::{Figure, tint};
+
+/// Height of a tile from which on it has a name.
+const NAMED: f32 = 44.0;
+
+/// The figures of the tiles.
+#[derive(Default)]
+pub(crate) struct Tiles(Vec<Figure>);
+
+impl Tiles {
+    /// Shows the tile at this place among them, lit for the model of a body. Returns the model's id if another is clicked.
+    pub(crate) fn show(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        place: usize,
+        now: Option<&Model>,
+        controls: &mut Controls,
+    ) -> Option<&'static str> {
+        if self.0.is_empty() {
+            let model = |id| Model::find(id).cloned().unwrap_or(Model::String);
+            self.0 = MODELS.iter().map(|(id, _)| Figure::small(&Body::new(model(id)))).collect();
+        }
+        let (palette, (id, name)) = (controls.palette, MODELS[place]);
+        let is_now = now.is_some_and(|model| model.id() == id);
+        let is_lit = is_now || now.is_some_and(|model| is_kin(model, id));
+        let response = choice(ui, rect, ("thing", name), is_lit);
+        if response.hovered() {
+            *controls.hint = Hint::new(name, "Make the body this.");
+        }
+        let face = if is_lit || response.hovered() { palette.raised } else { palette.ground };
+        ui.painter().rect(rect, RADIUS, face, edge(&response, is_lit, controls), StrokeKind::Inside);
+        let (below, around) = if rect.height() >= NAMED { (15.0, [7.0, 4.0]) } else { (0.0, [4.0, 3.0]) };
+        // A quarter of a pixel lower: edges on the centres of pixels are filled by some graphics drivers and not by others.
+        let picture = rect.with_max_y(rect.bottom() - below).shrink2(around.into()).translate(vec2(0.0, 0.25));
+        face::paint_still(ui.painter(), picture, &self.0[place], palette);
+        if below > 0.0 {
+            let colour = if is_lit { palette.text } else { palette.muted };
+            line(ui.painter(), rect.with_min_y(rect.bottom() - 16.0), Align2::CENTER_CENTER, name, SMALL, colour);
+        }
+        (response.clicked() && !is_now).then_some(id)
+    }
+}
+
+/// Shows the disc of a material; `help` is what choosing it does. Returns whether it is chosen and was not.
+pub(crate) fn disc(ui: &Ui, rect: Rect, id: &str, (is_now, help): (bool, &str), controls: &mut Controls) -> bool {
+    let palette = controls.palette;
+    let response = choice(ui, rect, ("material", id), is_now);
+    if response.hovered() {
+        *controls.hint = Hint::new(id, help);
+    }
+    let radius = 0.36 * rect.width().min(rect.height());
+    ui.painter().circle(rect.center(), radius, tint(id), Stroke::new(1.0, palette.line));
+    let light = rect.center() - vec2(0.3, 0.3) * radius;
+    ui.painter().circle_filled(light, 0.22 * radius, palette.text.gamma_multiply(0.35));
+    if is_now || response.has_focus() {
+        ui.painter().circle_stroke(rect.center(), radius + 2.5, edge(&response, is_now, controls));
+    }
+    response.clicked() && !is_now
+}
+
+/// A picture to click, which is chosen or not.
+fn choice(ui: &Ui, rect: Rect, (kind, name): (&'static str, &str), is_now: bool) -> Response {
+    let response = ui.interact(rect, Id::unique((kind, name)), Sense::click());
+    response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_now, format!("{kind}: {name}")));
+    response
+}
+
+fn edge(response: &Response, is_now: bool, controls: &Controls) -> Stroke {
+    let palette = controls.palette;
+    match (response.has_focus(), is_now) {
+        (true, _) => Stroke::new(1.5, palette.text),
+        (false, true) => Stroke::new(1.5, palette.accent),
+        (false, false) => Stroke::new(1.0, palette.outline),
+    }
+}
+
+/// Whether a model has no tile of its own, and that of `id` comes nearest.
+fn is_kin(model: &Model, id: &str) -> bool {
+    let kin = match model {
+        Model::Marimba | Model::Vibraphone | Model::Xylophone | Model::Tine => "free_bar",
+        Model::Timpani(_) => "membrane",
+        Model::Plate { .. } | Model::Bed(_) => "free_plate",
+        Model::Disc { .. } => "free_disc",
+        Model::HandBell => "church_bell",
+        Model::StoppedTube | Model::Cone { .. } | Model::TubularBell => "open_tube",
+        _ => return false,
+    };
+    kin == id
+}
