@@ -16,6 +16,7 @@ mod loading;
 mod mode_edits;
 mod motion;
 mod moving;
+mod pads;
 mod paging;
 mod picking;
 mod pictures;
