@@ -2,8 +2,10 @@
 
 pub(super) mod edit;
 pub(super) mod face;
+mod handle;
 pub(super) mod numbers;
 pub(super) mod offer;
 pub(super) mod origin;
 pub(super) mod page;
+mod pointing;
 pub(super) mod view;

@@ -90,7 +90,7 @@ impl Displays {
         let audition = &mut self.audition;
         let text = match self.picture {
             Picture::Phase => self.phase.show(ui, area, (energies, selected), shown, audition, controls),
-            Picture::Body => self.body.show(ui, area, shown, energies, audition, controls),
+            Picture::Body => self.body.show(ui, (area, false), shown, energies, audition, controls),
             Picture::Scope => {
                 let rate = link.sample_rate();
                 scope::paint(ui.painter(), area, &link.telemetry.scope().read(), rate, palette);

@@ -119,7 +119,7 @@ impl PlayPage {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Strike"));
         let is_struck = response.clicked();
         outline(ui, &response, middle, RADIUS, palette);
-        let caption = self.body.show(ui, rect, shown, energies, &mut self.audition, controls);
+        let caption = self.body.show(ui, (rect, true), shown, energies, &mut self.audition, controls);
         if is_struck {
             let now = ui.input(|input| input.time);
             self.audition.strike(shown.guide().home, velocity(ui), now, controls.params.link());
