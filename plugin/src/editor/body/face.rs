@@ -7,13 +7,18 @@ use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use sprung::sound::bodies::Point;
 use sprung_picture::{Figure, Picture};
 
-/// Space between a body and the frame that says that it is only a guess.
+/// Space around a body, for its handles and for the frame that says that it is only a guess.
 const AROUND: f32 = 14.0;
+
+/// What a body at rest takes of a picture, and the room in which its handles are taken hold of.
+pub(super) fn bounds(rect: Rect, figure: &Figure) -> Rect {
+    let places: Vec<Pos2> = figure.points.iter().map(|point| figure.form.on(rect, *point, 0.0)).collect();
+    Rect::from_points(&places).expand(AROUND).intersect(rect)
+}
 
 /// Paints a dashed frame around a body that is drawn for a table of modes, which knows of none.
 pub(crate) fn paint_guess(painter: &Painter, rect: Rect, figure: &Figure, palette: &Palette) {
-    let places: Vec<Pos2> = figure.points.iter().map(|point| figure.form.on(rect, *point, 0.0)).collect();
-    let frame = Rect::from_points(&places).expand(AROUND).intersect(rect);
+    let frame = bounds(rect, figure);
     let corners = [frame.left_top(), frame.right_top(), frame.right_bottom(), frame.left_bottom(), frame.left_top()];
     painter.extend(Shape::dashed_line(&corners, Stroke::new(1.0, palette.muted), 6.0, 5.0));
 }

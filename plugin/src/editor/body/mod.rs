@@ -8,4 +8,5 @@ pub(super) mod offer;
 pub(super) mod origin;
 pub(super) mod page;
 mod pointing;
+mod tool;
 pub(super) mod view;

@@ -27,10 +27,7 @@ pub(super) fn paint(painter: &Painter, rect: Rect, form: Form, strike: Option<Po
     let Some(most) = acting(controls) else { return };
     let at = form.on(rect, strike.unwrap_or(usual(form)), 0.0);
     let age = controls.notes.first().map(|note| note.age).filter(|_| !controls.params.view().less_motion);
-    let away = age.map_or(1.0, |age| {
-        let share = (age / BACK).clamp(0.0, 1.0);
-        share * share * (3.0 - 2.0 * share)
-    });
+    let away = age.map_or(1.0, away);
     let size = (0.045 * rect.height()).clamp(5.0, 14.0);
     // From the left below, where bells and bowls are seen from the side, and otherwise from above.
     let from = if matches!(form, Form::Bell | Form::Bowl) { vec2(-0.85, 0.53) } else { vec2(-0.42, -0.91) };
@@ -53,6 +50,12 @@ pub(super) fn paint(painter: &Painter, rect: Rect, form: Form, strike: Option<Po
         }
         _ => {}
     }
+}
+
+/// How far what has struck so many seconds ago is on its way to where it rests.
+fn away(age: f32) -> f32 {
+    let share = (age / BACK).clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
 }
 
 /// The loudest exciter of those that are drawn and on.
@@ -129,4 +132,16 @@ fn mouthpiece(painter: &Painter, end: Pos2, size: Vec2, palette: &Palette) {
     let beak = [[0.0, -0.75], [0.0, 0.75], [1.0, 0.62], [1.0, 0.38]].map(place);
     painter.add(Shape::convex_polygon(beak.to_vec(), shade("rubber", 1.15), Stroke::new(1.0, palette.muted)));
     painter.line_segment([[0.1, 0.82], [1.0, 0.68]].map(place), Stroke::new(2.0, shade("maple", 1.0)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_strikes_touches_and_goes_back() {
+        assert_eq!([0.0, BACK, 9.0].map(away), [0.0, 1.0, 1.0]);
+        let ways: Vec<f32> = (0..20).map(|step| away(0.02 * step as f32)).collect();
+        assert!(ways.is_sorted() && ways[3] < 0.2);
+    }
 }

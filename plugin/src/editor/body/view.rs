@@ -4,6 +4,7 @@ use super::edit::rest;
 use super::face;
 use super::handle::Handle;
 use super::pointing::Pointing;
+use super::tool;
 use crate::editor::controls::gestures::touch;
 use crate::editor::controls::shown::{Shown, Subject};
 use crate::editor::controls::{Controls, Hint};
@@ -40,11 +41,17 @@ struct Drag {
 }
 
 /// The picture's state.
-#[derive(Default)]
 pub(crate) struct BodyView {
     shape: Option<(Subject, BodyShape)>,
     swing: Swing,
     drag: Option<Drag>,
+    bounds: Rect,
+}
+
+impl Default for BodyView {
+    fn default() -> Self {
+        Self { shape: None, swing: Swing::default(), drag: None, bounds: Rect::NOTHING }
+    }
 }
 
 impl BodyView {
@@ -59,6 +66,11 @@ impl BodyView {
     /// Whether the body that was shown has a place to be struck at.
     pub(crate) fn has_place(&self, shown: &Shown, controls: &Controls) -> bool {
         self.shape.as_ref().is_some_and(|(_, shape)| Handle::Strike.place(shape, shown, controls).is_some())
+    }
+
+    /// Around the body that was shown.
+    pub(crate) fn bounds(&self) -> Rect {
+        self.bounds
     }
 
     /// Shows the body of a sound, on the stage or in a smaller picture. Returns the caption.
@@ -102,6 +114,9 @@ impl BodyView {
         if shape.origin == Origin::Table && shown.preset().is_some() {
             face::paint_guess(painter, rect, figure, palette);
         }
+        if is_stage {
+            tool::paint(painter, rect, figure.form, strike, controls);
+        }
         // What listens stands still beside what moves.
         let heard = ear.map(|ear| figure.form.on(rect, ear, 0.0));
         let has_room = is_stage && rect.height() >= NAMED;
@@ -112,6 +127,7 @@ impl BodyView {
         };
         struck.into_iter().for_each(|at| face::paint_ring(painter, at, look(Handle::Strike), palette));
         heard.into_iter().for_each(|at| face::paint_ear(painter, at, look(Handle::Ear), palette));
+        self.bounds = face::bounds(rect, figure);
         let caption = shape.caption.clone();
         self.shape = Some((subject, shape));
         caption

@@ -32,7 +32,7 @@ impl Band {
     }
 
     /// Drags from one place to another in some steps.
-    fn pull_to(&mut self, from: Pos2, to: Pos2) {
+    pub(super) fn pull_to(&mut self, from: Pos2, to: Pos2) {
         self.press(from, true);
         for step in 1..=6 {
             self.event(Event::PointerMoved(from + (to - from) * (step as f32 / 6.0)));
