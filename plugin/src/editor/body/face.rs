@@ -1,24 +1,29 @@
 //! Paints a body.
 
-use crate::editor::theme::Palette;
+use crate::editor::theme::{Palette, SMALL};
+use crate::editor::widgets::text::{line, width};
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
-use egui::{Painter, Pos2, Rect, Shape, Stroke};
+use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use sprung::sound::bodies::Point;
 use sprung_picture::{Figure, Ink, Picture};
 
-/// Space between a body and the frame that says that it is only a guess.
+/// Space around a body, for its handles and for the frame that says that it is only a guess.
 const AROUND: f32 = 14.0;
+
+/// What a body at rest takes of a picture, and the room in which its handles are taken hold of.
+pub(super) fn bounds(rect: Rect, figure: &Figure) -> Rect {
+    let places: Vec<Pos2> = figure.points.iter().map(|point| figure.form.on(rect, *point, 0.0)).collect();
+    Rect::from_points(&places).expand(AROUND).intersect(rect)
+}
 
 /// Paints a dashed frame around a body that is drawn for a table of modes, which knows of none.
 pub(crate) fn paint_guess(painter: &Painter, rect: Rect, figure: &Figure, palette: &Palette) {
-    let places: Vec<Pos2> = figure.points.iter().map(|point| figure.form.on(rect, *point, 0.0)).collect();
-    let frame = Rect::from_points(&places).expand(AROUND).intersect(rect);
+    let frame = bounds(rect, figure);
     let corners = [frame.left_top(), frame.right_top(), frame.right_bottom(), frame.left_bottom(), frame.left_top()];
     painter.extend(Shape::dashed_line(&corners, Stroke::new(1.0, palette.muted), 6.0, 5.0));
 }
 
-/// Paints the body. Displacements are in the picture's unit, none for a body at rest; `strike` is the place where the body is
-/// struck.
+/// Paints the body. Displacements are in the picture's unit, none for a body at rest. Returns where the place `strike` is then.
 pub(crate) fn paint(
     painter: &Painter,
     rect: Rect,
@@ -26,13 +31,60 @@ pub(crate) fn paint(
     displacements: &[f32],
     strike: Option<Point>,
     palette: &Palette,
-) {
-    paint_picture(painter, Picture::of(rect, figure, displacements, strike, palette.accent), palette);
+) -> Option<Pos2> {
+    let picture = Picture::of(rect, figure, displacements, strike, palette.accent);
+    let struck = picture.strike;
+    paint_picture(painter, picture, palette);
+    struck
+}
+
+/// How a handle is painted: its size as a multiple of the smallest, whether its name stands beside it, and whether it has the focus.
+#[derive(Clone, Copy)]
+pub(super) struct Look {
+    pub(super) size: f32,
+    pub(super) is_named: bool,
+    pub(super) is_focused: bool,
+}
+
+/// Paints the ring around the place that is struck.
+pub(super) fn paint_ring(painter: &Painter, at: Pos2, look: Look, palette: &Palette) {
+    paint_handle(painter, at, look, palette.accent, palette);
+    if look.is_named {
+        name(painter, at + vec2(5.5 * look.size, 0.0), "strike", palette);
+    }
+}
+
+/// Paints the ear at the place that is heard: a ring with waves.
+pub(super) fn paint_ear(painter: &Painter, at: Pos2, look: Look, palette: &Palette) {
+    paint_handle(painter, at, look, palette.text, palette);
+    for radius in [9.5, 13.5].map(|radius| radius * look.size) {
+        let arc = (-3..=3).map(|step| at + radius * Vec2::angled(step as f32 * 0.25));
+        painter.add(Shape::line(arc.collect(), Stroke::new(1.5, palette.text)));
+    }
+    if look.is_focused {
+        painter.circle_stroke(at, 17.0 * look.size, Stroke::new(1.5, palette.text));
+    }
+    if look.is_named {
+        name(painter, at + vec2(13.5 * look.size, 0.0), "listen", palette);
+    }
+}
+
+fn paint_handle(painter: &Painter, at: Pos2, look: Look, edge: Color32, palette: &Palette) {
+    painter.circle(at, 5.5 * look.size, palette.panel, Stroke::new(2.0, edge));
+    painter.circle_filled(at, 1.8 * look.size, palette.text);
+}
+
+/// Writes the name of a handle beside it, on a ground of its own.
+fn name(painter: &Painter, at: Pos2, name: &str, palette: &Palette) {
+    let size = vec2(width(painter, name, SMALL) + 8.0, 15.0);
+    let place = Rect::from_min_size(at + vec2(5.0, -0.5 * size.y), size);
+    painter.rect_filled(place, 4.0, palette.panel);
+    line(painter, place, Align2::CENTER_CENTER, name, SMALL, palette.text);
 }
 
 /// Paints a body at rest.
 pub(crate) fn paint_still(painter: &Painter, rect: Rect, figure: &Figure, palette: &Palette) {
-    paint(painter, rect, figure, &[], None, palette);
+    let _ = paint(painter, rect, figure, &[], None, palette);
 }
 
 /// Paints a body that stands on the lower edge of the rectangle.
@@ -60,9 +112,5 @@ fn paint_picture(painter: &Painter, picture: Picture, palette: &Palette) {
             Ink::Fine => Stroke::new(1.0, palette.text.gamma_multiply(0.25)),
         };
         painter.add(Shape::line(points, stroke));
-    }
-    if let Some(at) = picture.strike {
-        painter.circle(at, 5.5, palette.panel, Stroke::new(2.0, palette.text));
-        painter.circle_filled(at, 1.8, palette.text);
     }
 }

@@ -2,9 +2,12 @@
 
 pub(super) mod edit;
 pub(super) mod face;
+mod handle;
 pub(super) mod numbers;
 pub(super) mod offer;
 pub(super) mod origin;
 pub(super) mod page;
 pub(super) mod pick;
+mod pointing;
+mod tool;
 pub(super) mod view;

@@ -1,25 +1,37 @@
-//! Shows the body's motion in slow motion, and where it is struck.
+//! Shows the body's motion in slow motion, and where it is struck and heard.
 
 use super::edit::rest;
 use super::face;
+use super::handle::Handle;
+use super::pointing::Pointing;
+use super::tool;
 use crate::editor::controls::gestures::touch;
 use crate::editor::controls::shown::{Shown, Subject};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
-use crate::editor::modes::table::replace;
-use crate::editor::theme::RADIUS;
-use crate::editor::widgets::outline;
 use crate::loaded::Loaded;
-use egui::{CursorIcon, Id, Rect, Role, Sense, Ui, WidgetInfo};
-use sprung::params::Param;
+use egui::{CursorIcon, Pos2, Rect, Ui, Vec2};
 use sprung::sound::bodies::Point;
-use sprung_picture::{BodyShape, Form, Origin, REACH, Swing};
+use sprung_picture::{BodyShape, Origin, Swing};
 use std::sync::Arc;
 
-/// A drag of the strike's place in progress.
+/// Height from which on the stage has room for larger handles with their names, and how much larger these are.
+const NAMED: f32 = 220.0;
+const LARGE: f32 = 1.4;
+/// What is said of ring and ear.
+const STRIKES: &str = "Click, or drag the ring to another place.";
+const LISTENS: &str = "Drag the ear to another place: it does not hear the modes that have a node there.";
+
+/// A drag of a place in progress, by pointer or arrow keys.
 struct Drag {
+    handle: Handle,
     point: Point,
     written: Option<Point>,
+    /// Whether the sound has been changed.
+    is_changed: bool,
+    /// Where the pointer took hold of it, and how far off that was; none if the arrow keys move it.
+    from: Option<Pos2>,
+    off: Vec2,
     /// The velocity of its first strike.
     velocity: Option<f32>,
     /// When the sound may be changed again.
@@ -29,11 +41,17 @@ struct Drag {
 }
 
 /// The picture's state.
-#[derive(Default)]
 pub(crate) struct BodyView {
     shape: Option<(Subject, BodyShape)>,
     swing: Swing,
     drag: Option<Drag>,
+    bounds: Rect,
+}
+
+impl Default for BodyView {
+    fn default() -> Self {
+        Self { shape: None, swing: Swing::default(), drag: None, bounds: Rect::NOTHING }
+    }
 }
 
 impl BodyView {
@@ -47,14 +65,19 @@ impl BodyView {
 
     /// Whether the body that was shown has a place to be struck at.
     pub(crate) fn has_place(&self, shown: &Shown, controls: &Controls) -> bool {
-        self.shape.as_ref().is_some_and(|(_, shape)| strike(shape, shown, controls).is_some())
+        self.shape.as_ref().is_some_and(|(_, shape)| Handle::Strike.place(shape, shown, controls).is_some())
     }
 
-    /// Shows the body of a sound. Returns the caption.
+    /// Around the body that was shown.
+    pub(crate) fn bounds(&self) -> Rect {
+        self.bounds
+    }
+
+    /// Shows the body of a sound, on the stage or in a smaller picture. Returns the caption.
     pub(crate) fn show(
         &mut self,
         ui: &Ui,
-        rect: Rect,
+        (rect, is_stage): (Rect, bool),
         shown: &Shown,
         energies: &[f32],
         audition: &mut Audition,
@@ -69,83 +92,111 @@ impl BodyView {
             _ => BodyShape::of(&shown.patch().modes, shown.family(), shown.tags()),
         };
         let mut subject = shown.subject();
-        if strike(&shape, shown, controls).is_some() {
-            self.touch(ui, rect, &mut shape, shown, audition, controls);
-            // While the strike is dragged, the shapes stay as they are.
+        let (mut lit, mut focused) = (None, None);
+        if Handle::Strike.place(&shape, shown, controls).is_some() {
+            let places = self.places(&shape, shown, controls);
+            let held = self.drag.as_ref().map(|drag| (drag.handle, drag.off));
+            let pointing = Pointing::read(ui, rect, &shape, places, held, controls.palette);
+            self.touch(ui, &pointing, &mut shape, shown, audition, controls);
+            let dragged = self.drag.as_ref().map(|drag| drag.handle);
+            focused = pointing.focused;
+            lit = dragged.or(pointing.at.map(|(handle, ..)| handle)).or(focused);
+            // While a place is dragged, the shapes stay as they are.
             if let Some(drag) = &self.drag {
                 subject.0 = drag.loaded.clone();
             }
         }
         let seconds = (!controls.params.view().less_motion).then_some(controls.seconds);
         let moved = self.swing.advance(seconds, &shape, energies, rect);
-        let place = self.drag.as_ref().map(|drag| drag.point).or(strike(&shape, shown, controls));
-        face::paint(ui.painter(), rect, &shape.figure, &moved, place, controls.palette);
+        let [strike, ear] = self.places(&shape, shown, controls);
+        let (painter, palette, figure) = (ui.painter(), controls.palette, &shape.figure);
+        let struck = face::paint(painter, rect, figure, &moved, strike, palette);
         if shape.origin == Origin::Table && shown.preset().is_some() {
-            face::paint_guess(ui.painter(), rect, &shape.figure, controls.palette);
+            face::paint_guess(painter, rect, figure, palette);
         }
+        if is_stage {
+            tool::paint(painter, rect, figure.form, strike, controls);
+        }
+        // What listens stands still beside what moves.
+        let heard = ear.map(|ear| figure.form.on(rect, ear, 0.0));
+        let has_room = is_stage && rect.height() >= NAMED;
+        let look = |handle| face::Look {
+            size: if has_room { LARGE } else { 1.0 },
+            is_named: has_room || lit == Some(handle),
+            is_focused: focused == Some(handle),
+        };
+        struck.into_iter().for_each(|at| face::paint_ring(painter, at, look(Handle::Strike), palette));
+        heard.into_iter().for_each(|at| face::paint_ear(painter, at, look(Handle::Ear), palette));
+        self.bounds = face::bounds(rect, figure);
         let caption = shape.caption.clone();
         self.shape = Some((subject, shape));
         caption
     }
 
-    /// Follows the pointer, which moves the place of the strike.
+    /// Where strike and ear are, or are dragged to.
+    fn places(&self, shape: &BodyShape, shown: &Shown, controls: &Controls) -> [Option<Point>; 2] {
+        Handle::ALL.map(|handle| {
+            let dragged = self.drag.as_ref().filter(|drag| drag.handle == handle).map(|drag| drag.point);
+            dragged.or_else(|| handle.place(shape, shown, controls))
+        })
+    }
+
+    /// Lets pointer and arrow keys move the places of strike and ear.
     fn touch(
         &mut self,
         ui: &Ui,
-        rect: Rect,
+        pointing: &Pointing,
         shape: &mut BodyShape,
         shown: &Shown,
         audition: &mut Audition,
         controls: &mut Controls,
     ) {
-        let response = ui.interact(rect, Id::unique("body"), Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Struck body"));
         let now = ui.input(|input| input.time);
-        let pointer = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
-        // Pressed and let go between two passes.
-        let is_clicked = response.clicked() && ui.input(|input| input.pointer.any_click());
-        let found = pointer
-            .or(response.interact_pointer_pos())
-            .or(response.hover_pos())
-            .map(|pointer| shape.figure.form.nearest(rect, pointer));
-        let point = found.map(|(point, _)| shape.confined(point));
-        if let Some(point) = point.filter(|_| found.is_some_and(|(_, distance)| distance <= REACH)) {
-            let title = describe(point, shape).replacen("struck", "a click strikes", 1);
-            *controls.hint = Hint::new(title, "Click, or drag the ring to another place.");
+        match pointing.at {
+            Some((Handle::Strike, point, _)) => {
+                let title = Handle::Strike.describe(point, shape).replacen("struck", "a click strikes", 1);
+                *controls.hint = Hint::new(title, STRIKES);
+            }
+            Some((Handle::Ear, point, _)) => {
+                let place = Handle::Ear.place(shape, shown, controls).unwrap_or(point);
+                *controls.hint = Hint::new(Handle::Ear.describe(place, shape), LISTENS);
+            }
+            None => {}
         }
         let is_held = self.drag.is_some();
-        let is_pressed = is_clicked || pointer.is_some() && ui.input(|input| input.pointer.any_pressed());
-        if is_pressed && self.drag.is_none() && found.is_some_and(|(_, distance)| distance <= REACH) {
-            controls.history.begin(controls.params);
-            if let Some(point) = point {
-                let (loaded, velocity) = (shown.loaded().clone(), Some(velocity(ui)));
-                self.drag = Some(Drag { point, written: None, velocity, next: now, loaded });
-            }
+        if !is_held {
+            self.drag = self.begun(ui, pointing, shape, shown, controls);
         }
-        outline(ui, &response, rect, RADIUS, controls.palette);
         let Some(drag) = &mut self.drag else {
             // Beside the body, or by the keyboard.
-            if response.clicked() {
+            if pointing.is_clicked {
                 audition.strike(shown.guide().home, velocity(ui), now, controls.params.link());
             }
             return;
         };
-        let is_over = pointer.is_none();
-        if let Some(point) = point.filter(|_| !is_over) {
+        let is_by_key = drag.from.is_none();
+        let is_over = !(pointing.is_down || is_by_key && pointing.is_key_down);
+        if is_by_key && pointing.steps != Vec2::ZERO {
+            drag.point = drag.handle.stepped(drag.point, pointing.steps, shape);
+        } else if let Some((_, point, pos)) = pointing.at.filter(|_| pointing.is_down)
+            // The ear stays where it is until the pointer moves.
+            && (drag.handle == Handle::Strike || drag.from != Some(pos))
+        {
             drag.point = point;
         }
-        let drag_point = drag.point;
-        if (is_over || now >= drag.next) && drag.written != Some(drag.point) {
+        let (handle, point) = (drag.handle, drag.point);
+        if (is_over || now >= drag.next) && drag.written != Some(point) {
             let start = std::time::Instant::now();
-            write(drag.point, &mut shape.origin, controls);
+            handle.write(point, is_by_key, &mut shape.origin, controls);
             drag.next = now + rest(start);
-            drag.written = Some(drag.point);
+            (drag.written, drag.is_changed) = (Some(point), true);
             drag.loaded = controls.params.loaded();
         }
         if let Some(velocity) = drag.velocity.take() {
             audition.strike(shown.guide().home, velocity, now, controls.params.link());
         }
         if is_over {
+            let is_changed = drag.is_changed;
             self.drag = None;
             // A note that begins in this pass is held for its while.
             if is_held {
@@ -153,16 +204,47 @@ impl BodyView {
             }
             if shape.origin == Origin::Table {
                 controls.release();
-            } else {
-                controls.history.end_of(&[], describe(drag_point, shape), controls.params);
+            } else if is_changed {
+                controls.history.end_of(&[], handle.describe(point, shape), controls.params);
                 touch(controls.params, controls.host);
             }
             controls.history.cancel();
             return;
         }
         audition.repeat(shown.guide().home, now, controls.params.link());
-        ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+        if !is_by_key {
+            ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+        }
         ui.ctx().request_repaint();
+    }
+
+    /// The drag that begins in this pass.
+    fn begun(
+        &self,
+        ui: &Ui,
+        pointing: &Pointing,
+        shape: &BodyShape,
+        shown: &Shown,
+        controls: &mut Controls,
+    ) -> Option<Drag> {
+        let now = |handle: Handle| handle.place(shape, shown, controls);
+        let (handle, point, written, from, off, velocity) = match (pointing.at, pointing.focused) {
+            (Some((Handle::Ear, _, pos)), _) if pointing.is_pressed => {
+                let (point, at) = (now(Handle::Ear)?, pointing.ear?);
+                (Handle::Ear, point, Some(point), Some(pos), pos - at, velocity(ui))
+            }
+            (Some((Handle::Strike, point, pos)), _) if pointing.is_pressed => {
+                (Handle::Strike, point, None, Some(pos), Vec2::ZERO, velocity(ui))
+            }
+            (_, Some(handle)) if pointing.steps != Vec2::ZERO => {
+                let point = now(handle)?;
+                (handle, point, Some(point), None, Vec2::ZERO, VELOCITY)
+            }
+            _ => return None,
+        };
+        controls.history.begin(controls.params);
+        let (velocity, next, loaded) = (Some(velocity), ui.input(|input| input.time), shown.loaded().clone());
+        Some(Drag { handle, point, written, is_changed: false, from, off, velocity, next, loaded })
     }
 }
 
@@ -172,45 +254,4 @@ const PER_SPEED: f32 = 0.0002;
 /// The velocity of a strike by a click: that of a pointer at rest, or more if it moves.
 pub(crate) fn velocity(ui: &Ui) -> f32 {
     (VELOCITY + PER_SPEED * ui.input(|input| input.pointer.velocity().length())).min(1.0)
-}
-
-/// The exciter that has a place, for a table of modes: the pluck if it is on, or else the bow if it is on.
-fn exciter(controls: &Controls) -> Option<Param> {
-    let levels = [(Param::PluckLevel, Param::PluckPosition), (Param::BowLevel, Param::BowPosition)];
-    levels.into_iter().find(|(level, _)| controls.value(level.info()) > level.info().min).map(|(_, place)| place)
-}
-
-/// Where the sound is struck; none if the place is unknown or cannot be changed.
-fn strike(shape: &BodyShape, shown: &Shown, controls: &Controls) -> Option<Point> {
-    shown.preset()?;
-    match shape.origin.body() {
-        Some(body) => Some(body.strike),
-        None if shape.figure.form.is_line() => {
-            Some(Point { x: f64::from(controls.value(exciter(controls)?.info())) / 100.0, y: 0.0 })
-        }
-        None => None,
-    }
-}
-
-fn describe(point: Point, shape: &BodyShape) -> String {
-    let [x, y] = [point.x, point.y].map(|share| share * 100.0);
-    match shape.figure.form {
-        Form::Line | Form::Rod => format!("struck at {x:.1} %"),
-        Form::Bell | Form::HandBell => format!("struck at {:.0}° round it", 3.6 * y),
-        Form::Plate { .. } => format!("struck at {x:.0} %, {y:.0} %"),
-        _ => format!("struck at {x:.0} %, {:.0}° round it", 3.6 * y),
-    }
-}
-
-/// Changes the place of the strike in the sound.
-fn write(point: Point, origin: &mut Origin, controls: &mut Controls) {
-    if *origin == Origin::Table {
-        if let Some(param) = exciter(controls) {
-            controls.turn(param.info(), param.info().normalise(100.0 * point.x as f32));
-        }
-        return;
-    }
-    if let Some(modes) = origin.struck_at(point) {
-        replace(modes, controls);
-    }
 }

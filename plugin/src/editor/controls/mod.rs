@@ -3,6 +3,7 @@
 pub(super) mod files;
 pub(super) mod gestures;
 pub(super) mod history;
+mod macros;
 mod offsets;
 pub(super) mod shown;
 
@@ -72,6 +73,8 @@ pub(super) struct Interaction {
     /// Position of the dragged knob, more precise than the knob's own.
     pub(super) dragged: f64,
     pub(super) typing: Option<Typing>,
+    /// The name of a macro that is being typed.
+    pub(super) naming: Option<Typing>,
     /// The parameter that waits for a source of a route.
     pub(super) learning: Option<Learning>,
     pub(super) binding: Option<Binding>,

@@ -82,7 +82,7 @@ impl Displays {
                 String::new()
             }
             Picture::Phase => self.phase.show(ui, area, (energies, selected), shown, audition, controls),
-            Picture::Body => self.body.show(ui, area, shown, energies, audition, controls),
+            Picture::Body => self.body.show(ui, (area, false), shown, energies, audition, controls),
             Picture::Scope => scope::show(ui, area, controls),
             Picture::Ringing => {
                 self.ringing.paint(ui.painter(), area, selected, palette);

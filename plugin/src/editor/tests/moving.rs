@@ -6,11 +6,11 @@ use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::window::Face;
 use crate::link::Touch;
-use egui::{Event, Pos2, vec2};
+use egui::{Event, Key, Pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
 use sprung::engine::EventKind;
 use sprung::params::Param;
-use sprung::sound::bodies::Point;
+use sprung::sound::bodies::{Body, Model, Point};
 use sprung_picture::{Form, Origin};
 
 impl Band {
@@ -19,14 +19,20 @@ impl Band {
         self.passes(3);
     }
 
+    /// Where the body is struck, and where it is heard.
+    fn places(&self) -> [Point; 2] {
+        let origin = Origin::of(&self.stage.params.loaded().kit.sounds()[0].patch().modes);
+        let body = origin.body().unwrap_or_else(|| panic!("{origin:?}"));
+        [body.strike, body.pickup]
+    }
+
     /// Where the body is struck.
     fn struck(&self) -> Point {
-        let origin = Origin::of(&self.stage.params.loaded().kit.sounds()[0].patch().modes);
-        origin.body().unwrap_or_else(|| panic!("{origin:?}")).strike
+        self.places()[0]
     }
 
     /// Drags from one place to another in some steps.
-    fn pull_to(&mut self, from: Pos2, to: Pos2) {
+    pub(super) fn pull_to(&mut self, from: Pos2, to: Pos2) {
         self.press(from, true);
         for step in 1..=6 {
             self.event(Event::PointerMoved(from + (to - from) * (step as f32 / 6.0)));
@@ -75,6 +81,74 @@ fn a_body_is_struck_where_it_is_clicked_and_that_is_undone_by_name() {
         assert!(is_reported, "the host is told once that there is something to save: {calls:?}");
         band.stage.button("Undo");
         assert!(band.stage.params.state() == before, "{sound}: one step");
+    }
+}
+
+#[test]
+fn a_body_is_heard_where_the_ear_is_dragged_and_a_click_leaves_it_there() {
+    let mut band = Band::of(facing(Face::Play, "Opera Gong", SIZE, 1.0, Theme::Dark));
+    let before = band.stage.params.state();
+    let (rect, [struck, _]) = (band.rect("Struck body"), band.places());
+    let place = |x, y| Form::Round.on(rect, Point { x, y }, 0.0);
+    let ear = band.rect("Ear").center();
+    band.press(ear + vec2(3.0, 2.0), true);
+    band.press(ear + vec2(3.0, 2.0), false);
+    assert!(band.heard.iter().any(|touch| matches!(touch, Touch::Down { .. })), "a click is heard");
+    assert!(band.stage.params.state() == before && band.stage.host.calls().is_empty());
+    band.heard.clear();
+    band.pull_to(ear, place(0.5, 0.9));
+    let [still, heard] = band.places();
+    assert!(still == struck && (heard.x - 0.5).abs() < 0.03 && (heard.y - 0.9).abs() < 0.03, "{heard:?}");
+    let strikes = band.heard.iter().filter(|touch| matches!(touch, Touch::Down { .. })).count();
+    assert!(strikes >= 2, "{:?}", band.heard);
+    assert_eq!(band.stage.host.calls().len(), 3, "the host is told once");
+    // Beside each other, the nearer one is taken.
+    let ring = place(struck.x, struck.y);
+    band.pull_to(place(heard.x, heard.y), ring + vec2(9.0, 0.0));
+    assert_eq!(band.struck(), struck);
+    let [_, beside] = band.places();
+    band.pull_to(ring, place(0.3, 0.1));
+    let [moved, heard] = band.places();
+    assert!(heard == beside && (moved.x - 0.3).abs() < 0.03, "{moved:?} {heard:?}");
+    for _ in 0..3 {
+        band.undo();
+    }
+    assert!(band.stage.params.state() == before, "three steps");
+}
+
+#[test]
+fn arrow_keys_move_ring_and_ear() {
+    let mut band = Band::of(facing(Face::Play, "Opera Gong", SIZE, 1.0, Theme::Dark));
+    let before = band.stage.params.state();
+    let [struck, heard] = band.places();
+    for (name, key) in [("Struck body", Key::ArrowUp), ("Ear", Key::ArrowLeft)] {
+        band.stage.harness.get_by_label(name).focus();
+        band.passes(2);
+        band.heard.clear();
+        band.stage.harness.key_press(key);
+        band.passes(3);
+        assert!(band.heard.iter().any(|touch| matches!(touch, Touch::Down { .. })), "{name}");
+    }
+    let [now, ear] = band.places();
+    assert!((struck.x - now.x - 0.01).abs() < 1e-6 && now.y == struck.y, "{struck:?} {now:?}");
+    assert!((ear.y - heard.y - 0.01).abs() < 1e-6 && ear.x == heard.x, "{heard:?} {ear:?}");
+    band.undo();
+    assert_eq!(band.places(), [now, heard]);
+    band.undo();
+    assert!(band.stage.params.state() == before);
+}
+
+#[test]
+fn a_body_that_hears_nothing_of_the_place_has_no_ear() {
+    for (id, model) in Model::ALL {
+        let body = Body::new(model.clone());
+        let moved = Body { pickup: Point { x: 0.35, y: 0.2 }, ..body.clone() };
+        let levels = |body: &Body| body.modes().into_iter().map(|mode| mode.level).collect::<Vec<_>>();
+        assert_eq!(levels(&body) == levels(&moved), *id == "mass", "{id}");
+    }
+    for (sound, has_ear) in [("Init", false), ("Crash", false), ("Acoustic Kit", false), ("Church Bell", true)] {
+        let band = Band::of(facing(Face::Play, sound, SIZE, 1.0, Theme::Dark));
+        assert_eq!(band.stage.harness.query_by_label("Ear").is_some(), has_ear, "{sound}");
     }
 }
 

@@ -1,6 +1,7 @@
 //! The page that a window opens with.
 
-use super::pictures::{compare, compare_exactly, compare_small, facing, facing_on, finish};
+use super::fake_host::Call;
+use super::pictures::{Stage, compare, compare_exactly, compare_small, differing, facing, facing_on, finish};
 use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::window::Face;
@@ -10,7 +11,10 @@ use crate::params::SprungParams;
 use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, PointerButton, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use image::RgbaImage;
 use sprung::params::Param;
+use sprung::patch::routes::{Route, Routes, Source};
+use sprung::preset::Playable;
 use sprung_picture::Origin;
 
 impl Band {
@@ -189,6 +193,153 @@ fn a_mallet_may_strike_what_the_incoming_sound_drives() {
     assert!(band.value(Param::MalletLevel) == silent && band.value(Param::InputLevel) == 0.0);
     band.click(Role::Button, "Mallet alone");
     assert!(band.value(Param::MalletLevel) > silent && band.value(Param::InputLevel) == Param::InputLevel.info().min);
+}
+
+/// What is painted of the stage while exciters have these levels and nothing sounds.
+fn acted_on(levels: &[(Param, f32)]) -> RgbaImage {
+    let mut stage = facing(Face::Play, "Church Bell", SIZE, 1.0, Theme::Dark);
+    for level in [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel, Param::BowLevel] {
+        let value = levels.iter().find(|(param, _)| *param == level).map_or(level.info().min, |(_, value)| *value);
+        stage.params.knobs()[level as usize].turn(level.info().normalise(value) as f32);
+    }
+    stage.harness.run_steps(3);
+    let picture = stage.harness.render().unwrap();
+    image::imageops::crop_imm(&picture, 160, 60, 740, 340).to_image()
+}
+
+#[test]
+fn what_acts_most_is_drawn_where_it_acts() {
+    let bare = acted_on(&[(Param::NoiseLevel, 0.0)]);
+    let drawn: Vec<_> = [Param::MalletLevel, Param::PluckLevel, Param::BowLevel]
+        .into_iter()
+        .map(|level| acted_on(&[(level, -6.0), (Param::NoiseLevel, 0.0)]))
+        .collect();
+    for (place, one) in drawn.iter().enumerate() {
+        assert!(differing(&bare, one, 16) > 200, "{place}");
+        assert!(drawn[..place].iter().all(|other| differing(other, one, 16) > 200), "{place}");
+    }
+    let both = acted_on(&[(Param::MalletLevel, -6.0), (Param::BowLevel, -12.0)]);
+    assert_eq!(differing(&both, &drawn[0], 1), 0, "the louder one alone");
+}
+
+#[test]
+fn the_floor_is_dragged_for_the_mix_and_its_far_edge_for_the_size() {
+    let mut band = playing("Church Bell");
+    assert!(band.stage.harness.query_by_label("The floor").is_none(), "there is nothing to drag yet");
+    band.click(Role::Tab, "Plate");
+    assert_eq!(band.strikes(), 1, "the choice is heard");
+    band.click(Role::Tab, "Plate");
+    assert_eq!(band.strikes(), 0, "it is no other");
+    for (name, param) in [("The floor", Param::SpaceMix), ("The floor’s far edge", Param::SpaceSize)] {
+        let before = band.stage.params.state();
+        let value = before.values.get(param);
+        band.stage.host.calls();
+        let from = band.rect(name).center();
+        band.pull_to(from, from - vec2(0.0, 30.0));
+        band.passes(2);
+        assert!(band.value(param) > 1.1 * value, "{name}: {value} {}", band.value(param));
+        assert!(band.strikes() > 0, "{name}");
+        let calls = band.stage.host.calls();
+        let is_one = matches!(&calls[..], [Call::Begin(first), .., Call::End(last)] if first == last);
+        assert!(is_one && calls.iter().filter(|call| matches!(call, Call::Begin(_))).count() == 1, "{calls:?}");
+        band.undo();
+        assert!(band.stage.params.state() == before, "{name}: one step");
+        band.stage.harness.get_by_label(name).focus();
+        band.passes(2);
+        band.stage.harness.key_press(Key::ArrowUp);
+        band.passes(2);
+        assert!(band.value(param) > value, "{name} by key");
+        band.undo();
+    }
+    band.passes(60);
+    let edge = band.rect("The floor’s far edge");
+    band.heard.clear();
+    band.press(edge.center(), true);
+    band.press(edge.center(), false);
+    assert_eq!(band.strikes(), 1, "a click strikes the body");
+    assert!(!edge.intersects(band.rect("Ear")), "what belongs to the body stays its own");
+}
+
+#[test]
+fn the_floor_glows_by_the_level_and_is_as_it_was_when_nothing_sounds() {
+    let mut band = playing("Church Bell");
+    band.click(Role::Tab, "Room");
+    let wall = |band: &mut Band| {
+        let picture = band.stage.harness.render().unwrap();
+        image::imageops::crop_imm(&picture, 170, 60, 180, 120).to_image()
+    };
+    band.silence();
+    band.passes(150);
+    let rest = wall(&mut band);
+    band.strike_at(48, 1.0);
+    band.passes(6);
+    assert!(differing(&rest, &wall(&mut band), 1) > 50);
+    band.silence();
+    band.passes(150);
+    assert_eq!(differing(&rest, &wall(&mut band), 1), 0);
+}
+
+#[test]
+fn hands_are_told_how_far_they_move_things_where_there_is_room() {
+    for (size, is_long) in [(SIZE, true), (LEAST_SIZE, false)] {
+        let stage = facing(Face::Play, "Church Bell", size, 1.0, Theme::Dark);
+        assert_eq!(stage.paints("Wheel: brightness +"), is_long);
+        assert!(stage.paints("Wheel: brightness"));
+    }
+}
+
+#[test]
+fn a_macro_is_added_by_its_name_and_named_again_in_its_menu() {
+    let mut stage = facing(Face::Play, "Church Bell", SIZE, 1.0, Theme::Dark);
+    let before = stage.params.state();
+    let names = |stage: &Stage| match stage.params.state().playable {
+        Playable::Preset(preset) => preset.guide.macros,
+        Playable::Kit(_) => Vec::new(),
+    };
+    let has = |stage: &Stage, number: usize| {
+        stage.harness.query_by_role_and_label(Role::Slider, &format!("Macro {number}")).is_some()
+    };
+    let typed = |stage: &mut Stage, text: &str, key: Key| {
+        stage.harness.event(Event::Text(text.to_owned()));
+        stage.harness.run_steps(2);
+        stage.harness.key_press(key);
+        stage.harness.run_steps(3);
+    };
+    let known = names(&stage);
+    assert!(known.len() == 4 && !has(&stage, 5));
+    stage.button("Add a macro");
+    stage.harness.get_by_role_and_label(Role::TextInput, "Name of Macro 5");
+    typed(&mut stage, "Shi", Key::Escape);
+    assert!(stage.params.state() == before && !has(&stage, 5), "Escape leaves all as it was");
+    stage.button("Add a macro");
+    typed(&mut stage, " Shine ", Key::Enter);
+    assert_eq!((&names(&stage)[..4], &names(&stage)[4][..]), (&known[..], "Shine"));
+    assert!(has(&stage, 5) && !stage.host.calls().is_empty(), "the host saves the project");
+    stage.harness.get_by_role_and_label(Role::Slider, "Macro 5").click_secondary();
+    stage.harness.run_steps(3);
+    stage.button("Name Macro 5");
+    typed(&mut stage, "Glow", Key::Enter);
+    assert_eq!(names(&stage)[4], "Glow");
+    stage.button("Undo");
+    assert_eq!(names(&stage)[4], "Shine");
+    stage.button("Undo");
+    assert!(stage.params.state() == before);
+    // A sound of the user's own has macros without names: one that moves something comes first.
+    stage.params.change(|mut state| {
+        let Playable::Preset(preset) = &mut state.playable else { return None };
+        preset.guide.macros.clear();
+        preset.patch.routes = Routes::NONE;
+        preset.patch.routes.set(3, Some(Route::linear(Source::Macro7, Param::Tilt)));
+        Some(state)
+    });
+    stage.harness.run_steps(3);
+    for number in [7, 1] {
+        stage.button("Add a macro");
+        typed(&mut stage, "Mine", Key::Enter);
+        assert_eq!(names(&stage)[number - 1], "Mine");
+    }
+    let kit = facing(Face::Play, "Acoustic Kit", SIZE, 1.0, Theme::Dark);
+    assert!(kit.harness.query_by_label("Add a macro").is_none(), "its sounds have theirs");
 }
 
 #[test]

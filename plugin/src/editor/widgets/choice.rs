@@ -36,7 +36,7 @@ pub(crate) fn show(ui: &mut Ui, cell: Rect, info: &'static ParamInfo, name: &str
         controls.explain(format!("{} {value}{said}", info.name), info);
     }
     face::paint_mark(ui.painter(), rect.center_bottom(), mark.as_ref(), controls.palette);
-    line(ui.painter(), knob::name_rect(cell), Align2::CENTER_CENTER, name, SMALL, controls.palette.text);
+    line(ui.painter(), knob::name_rect(cell, KNOB), Align2::CENTER_CENTER, name, SMALL, controls.palette.text);
 }
 
 /// A field that shows one of several names, and opens the list of them.

@@ -309,7 +309,9 @@ impl Window {
                 }
             }
             None if self.face == Face::Play => {
-                if let Some(message) = self.play.show(ui, layout.page(), &self.shown, &energies, &mut controls) {
+                let level = levels[0].max(levels[1]).min(1.0);
+                let sounding = (&energies[..], level);
+                if let Some(message) = self.play.show(ui, layout.page(), &self.shown, sounding, &mut controls) {
                     self.news = Some(Err(message));
                 }
             }

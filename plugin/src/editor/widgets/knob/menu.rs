@@ -20,6 +20,11 @@ pub(crate) fn show(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
         type_value(info, controls);
         ui.close();
     }
+    if controls.can_name(info) && ui.button(format!("Name {}", info.name)).clicked() {
+        let Playable::Preset(preset) = controls.params.state().playable else { return };
+        controls.begin_naming(info, preset.guide.macro_name(info.id).unwrap_or_default().to_owned());
+        ui.close();
+    }
     if ui.button(format!("Reset to {}", controls.written(info, info.default))).clicked() {
         controls.set(info, info.default);
         ui.close();

@@ -4,10 +4,10 @@ pub(crate) mod face;
 pub(super) mod menu;
 
 use super::text::line;
-use super::typing::{type_value, typed};
+use super::typing::{named, type_value, typed};
 use crate::editor::controls::Controls;
 use crate::editor::routes::{Ring, carry};
-use crate::editor::theme::{KNOB, SMALL};
+use crate::editor::theme::SMALL;
 use crate::marks::Mark;
 use egui::accesskit::{Action, ActionData};
 use egui::{Align2, CursorIcon, Event, EventFilter, Id, Key, Rect, Response, Sense, Stroke, Ui};
@@ -43,9 +43,9 @@ impl Parts {
     }
 }
 
-/// Where the name is in a cell.
-pub(crate) fn name_rect(cell: Rect) -> Rect {
-    Parts::of(cell, KNOB).name
+/// Where the name is in a cell, for a face of this width.
+pub(crate) fn name_rect(cell: Rect, side: f32) -> Rect {
+    Parts::of(cell, side).name
 }
 
 /// Where the face is in the part of a cell that is turned.
@@ -128,7 +128,9 @@ pub(crate) fn show(
     face::paint(ui.painter(), parts.face, palette, &face);
     // In the gap of the arc.
     face::paint_mark(ui.painter(), parts.face.center_bottom() - vec2(0.0, 3.0), turned.mark.as_ref(), palette);
-    line(ui.painter(), parts.name, Align2::CENTER_CENTER, name, SMALL, palette.text);
+    if !named(ui, parts.name, info, controls) {
+        line(ui.painter(), parts.name, Align2::CENTER_CENTER, name, SMALL, palette.text);
+    }
     show_value(ui, parts.value, Align2::CENTER_CENTER, info, &turned, controls);
 }
 
@@ -190,7 +192,8 @@ fn show_value(
     }
 }
 
-fn drag(ui: &Ui, response: &mut Response, travel: f32, info: &'static ParamInfo, controls: &mut Controls) {
+/// Lets the user turn a parameter by dragging: `travel` pixels turn it from end to end.
+pub(crate) fn drag(ui: &Ui, response: &mut Response, travel: f32, info: &'static ParamInfo, controls: &mut Controls) {
     let index = info.param as usize;
     if response.drag_started() {
         controls.interaction.dragged = f64::from(controls.position(info));
@@ -268,7 +271,7 @@ pub(super) fn wheel(ui: &Ui, response: &Response, info: &'static ParamInfo, cont
 }
 
 /// Handles the arrow keys, the keys that reset, and the actions of a screen reader, which is told the value.
-pub(super) fn keys(ui: &Ui, response: &Response, info: &'static ParamInfo, controls: &mut Controls) {
+pub(crate) fn keys(ui: &Ui, response: &Response, info: &'static ParamInfo, controls: &mut Controls) {
     ui.ctx().accesskit_node_builder(response.id, |node| {
         let value = controls.value(info);
         node.set_description(controls.text(info));
