@@ -278,7 +278,7 @@ impl Window {
             self.motion.leave();
         }
         if seen.is_none() {
-            controls.interaction.typing = None;
+            (controls.interaction.typing, controls.interaction.naming) = (None, None);
         }
         let (mut reads, mut picked) = (false, Vec::new());
         match self.over {
