@@ -3,7 +3,7 @@
 pub(super) mod files;
 pub(super) mod gestures;
 pub(super) mod history;
-mod macros;
+pub(super) mod naming;
 mod offsets;
 pub(super) mod shown;
 
@@ -49,6 +49,14 @@ pub(super) struct Typing {
     pub(super) complaint: Option<String>,
 }
 
+/// The name of a macro that is being typed.
+pub(super) struct Naming {
+    pub(super) info: &'static ParamInfo,
+    pub(super) text: String,
+    /// Whether the field has taken the focus.
+    pub(super) is_open: bool,
+}
+
 /// A parameter that waits for a source of a route.
 pub(super) struct Learning {
     pub(super) info: &'static ParamInfo,
@@ -73,8 +81,7 @@ pub(super) struct Interaction {
     /// Position of the dragged knob, more precise than the knob's own.
     pub(super) dragged: f64,
     pub(super) typing: Option<Typing>,
-    /// The name of a macro that is being typed.
-    pub(super) naming: Option<Typing>,
+    pub(super) naming: Option<Naming>,
     /// The parameter that waits for a source of a route.
     pub(super) learning: Option<Learning>,
     pub(super) binding: Option<Binding>,

@@ -1,6 +1,7 @@
 //! The sources of routes: each can be dragged to a knob; a click shows the knobs of those that have any.
 
 use super::curve::paint_notes;
+use crate::editor::controls::naming::{self, macro_number};
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::pages::curves;
@@ -9,10 +10,11 @@ use crate::editor::routes::{OF_KITS, source_name};
 use crate::editor::theme::{RADIUS, SMALL, TEXT};
 use crate::editor::widgets::text::{fitting, line, width};
 use egui::{
-    Align2, Color32, CursorIcon, Id, Mesh, Painter, Pos2, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
-    UiBuilder, WidgetInfo, pos2, vec2,
+    Align2, Color32, CursorIcon, Id, Key, Mesh, Painter, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke,
+    StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 use sprung::engine::SoundingNote;
+use sprung::params::{PARAMS, ParamInfo};
 use sprung::patch::routes::{Route, Source};
 use std::f32::consts::TAU;
 
@@ -46,6 +48,11 @@ fn drawn(source: Source) -> Option<&'static str> {
 /// The section whose knobs a source has.
 pub(in crate::editor) fn section_of(source: Source) -> Option<&'static str> {
     drawn(source).or(source.id().starts_with("macro").then_some("Macros"))
+}
+
+/// The knob of a macro; none for another source.
+fn macro_of(source: Source) -> Option<&'static ParamInfo> {
+    PARAMS.iter().find(|info| info.id == source.id() && macro_number(info).is_some())
 }
 
 /// How many routes a source has.
@@ -140,15 +147,25 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, contr
             line(ui.painter(), place, Align2::LEFT_CENTER, title, SMALL, controls.palette.muted);
         }
         for (source, name, place) in places {
-            if show_source(ui, place.translate(offset), (source, name), Some(source == chosen), shown, controls) {
+            let place = place.translate(offset);
+            let knob = macro_of(source);
+            if knob.is_some_and(|info| naming::field(ui, place, info, controls)) {
+                continue;
+            }
+            let response = show_source(ui, place, (source, name), Some(source == chosen), shown, controls);
+            if response.clicked() {
                 clicked = section_of(source).map(|_| source).or(clicked);
+            }
+            let is_asked = response.has_focus() && ui.input(|input| input.key_pressed(Key::F2));
+            if let Some(info) = knob.filter(|_| response.secondary_clicked() || is_asked) {
+                naming::begin(info, controls);
             }
         }
     });
     clicked
 }
 
-/// Shows a source, which can be chosen by a click or is only dragged. Returns whether it was clicked.
+/// Shows a source, which can be chosen by a click or is only dragged.
 fn show_source(
     ui: &Ui,
     rect: Rect,
@@ -156,7 +173,7 @@ fn show_source(
     chosen: Option<bool>,
     shown: &Shown,
     controls: &mut Controls,
-) -> bool {
+) -> Response {
     let palette = controls.palette;
     // What a click does nothing with is no stop for Tab.
     let (sense, is_chosen) = (chosen.map_or(Sense::DRAG, |_| Sense::click_and_drag()), chosen == Some(true));
@@ -172,8 +189,9 @@ fn show_source(
             1 => "It has one route.".to_owned(),
             count => format!("It has {count} routes."),
         };
+        let names = if section_of(source) == Some("Macros") { " Right click, or F2: its name." } else { "" };
         let drags = if is_preset { "Drag it to a knob; held over a tab, it opens that page." } else { OF_KITS };
-        *controls.hint = Hint::new(name, format!("{routes} {drags}"));
+        *controls.hint = Hint::new(name, format!("{routes} {drags}{names}"));
         if is_preset {
             ui.ctx().set_cursor_icon(CursorIcon::Grab);
         }
@@ -200,7 +218,7 @@ fn show_source(
             paint_notes(ui, picture, section, notes_of(source, shown, controls), controls);
         }
     }
-    response.clicked()
+    response
 }
 
 /// Paints the mark of a source that has routes: a disc, or while a note sounds, a pie of its value there.

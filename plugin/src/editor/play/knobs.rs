@@ -1,5 +1,6 @@
 //! The knobs that matter: the macros that have names, with a place to name another, the essential ones, and the gain.
 
+use crate::editor::controls::naming::{self, macro_number};
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::lamps;
@@ -38,10 +39,9 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, [title, side]: [f32; 2], shown: &Sho
     let palette = controls.palette;
     palette.paint_panel(ui.painter(), rect);
     // Each sound of a kit has others.
-    let naming = controls.interaction.naming.as_ref().map(|naming| naming.index);
+    let naming = controls.interaction.naming.as_ref().map(|naming| naming.info.param);
     let has_name = |info: &ParamInfo| shown.guide().macro_name(info.id).is_some();
-    let named =
-        |info: &&'static ParamInfo| shown.preset().is_some() && (has_name(info) || naming == Some(info.param as usize));
+    let named = |info: &&'static ParamInfo| shown.preset().is_some() && (has_name(info) || naming == Some(info.param));
     let macros: Vec<(&'static ParamInfo, String)> = PARAMS
         .iter()
         .filter(named)
@@ -109,7 +109,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, [title, side]: [f32; 2], shown: &Sho
 /// is being named, and when all have names.
 fn next(shown: &Shown, controls: &Controls) -> Option<&'static ParamInfo> {
     shown.preset().filter(|_| controls.interaction.naming.is_none())?;
-    let is_unnamed = |info: &&ParamInfo| controls.can_name(info) && shown.guide().macro_name(info.id).is_none();
+    let is_unnamed = |info: &&ParamInfo| macro_number(info).is_some() && shown.guide().macro_name(info.id).is_none();
     let moves = |info: &&&ParamInfo| {
         let is_of = |source: Source| source.id() == info.id;
         let mut routes = shown.patch().routes.iter();
@@ -145,6 +145,6 @@ fn add(ui: &Ui, cell: Rect, side: f32, info: &'static ParamInfo, controls: &mut 
         *controls.hint = Hint::new(format!("Name {}", info.name), help);
     }
     if response.clicked() {
-        controls.begin_naming(info, String::new());
+        naming::begin(info, controls);
     }
 }

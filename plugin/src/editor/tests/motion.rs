@@ -4,10 +4,11 @@ use super::pictures::{Stage, compare, compare_small, facing, finish};
 use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::window::Face;
-use egui::{Event, Modifiers, PointerButton, Pos2, Role, vec2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
 use sprung::params::Param;
 use sprung::patch::routes::{MAX_ROUTES, Route, Routes, Source};
+use sprung::preset::Playable;
 
 fn at(sound: &str, size: [u32; 2], theme: Theme) -> Stage {
     facing(Face::Motion, sound, size, 1.0, theme)
@@ -213,4 +214,44 @@ fn the_buttons_of_the_header_do_not_overlap() {
         assert!(places.windows(2).all(|pair| pair[0].right() < pair[1].left()), "{width}: {places:?}");
         assert!(places[6].right() <= width as f32, "{width}: {places:?}");
     }
+}
+
+#[test]
+fn a_macro_is_named_in_its_place_and_the_name_is_one_step() {
+    let mut stage = at("Marimba", SIZE, Theme::Dark);
+    let names = |stage: &Stage| match stage.params.state().playable {
+        Playable::Preset(preset) => preset.guide.macros,
+        Playable::Kit(_) => Vec::new(),
+    };
+    let before = (names(&stage), stage.params.state());
+    assert_eq!(before.0.len(), 4);
+    let name = |stage: &mut Stage, text: &str, key: Key| {
+        stage.harness.run_steps(2);
+        stage.type_text(text);
+        stage.harness.key_press(key);
+        stage.harness.run_steps(3);
+    };
+    stage.harness.get_by_role_and_label(Role::Button, "Source macro6").click_secondary();
+    name(&mut stage, " Air ", Key::Enter);
+    assert_eq!(names(&stage), [&before.0[..], &[String::new(), "Air".to_owned()]].concat());
+    stage.harness.get_by_label_contains("named macro 6 Air");
+    // By a key, over the present name; Escape keeps that.
+    stage.harness.get_by_role_and_label(Role::Button, "Source Air").focus();
+    stage.harness.run_steps(2);
+    stage.harness.key_press(Key::F2);
+    name(&mut stage, "Wind", Key::Escape);
+    assert_eq!(names(&stage)[5], "Air");
+    stage.harness.key_press(Key::F2);
+    stage.button("Undo");
+    assert!(stage.params.state() == before.1, "the other knobs are where they were");
+    // Nothing is named anew by its own name, and an empty one takes it away.
+    let first = format!("Source {}", before.0[0]);
+    stage.harness.get_by_role_and_label(Role::Button, &first).click_secondary();
+    name(&mut stage, &before.0[0], Key::Enter);
+    assert!(stage.params.state() == before.1);
+    stage.harness.get_by_role_and_label(Role::Button, &first).click_secondary();
+    stage.harness.run_steps(2);
+    name(&mut stage, " ", Key::Enter);
+    assert_eq!(names(&stage)[0], "");
+    stage.harness.get_by_role_and_label(Role::Button, "Source macro 1");
 }

@@ -1,4 +1,4 @@
-//! The fields in which a parameter's value and a macro's name are typed.
+//! The field in which a parameter's value is typed.
 
 use super::text::{name_field, take_over};
 use crate::editor::controls::{Controls, Typing};
@@ -46,33 +46,5 @@ pub(super) fn typed(ui: &mut Ui, rect: Rect, field: Id, info: &'static ParamInfo
         }
     }
     controls.interaction.typing = Some(typing);
-    true
-}
-
-/// Shows the field for the name of a macro while one is typed. Enter gives it the name, Escape leaves it as it was. Returns whether one
-/// is typed.
-pub(super) fn named(ui: &mut Ui, rect: Rect, info: &ParamInfo, controls: &mut Controls) -> bool {
-    let Some(mut naming) = controls.interaction.naming.take_if(|naming| naming.index == info.param as usize) else {
-        return false;
-    };
-    let field = Id::unique(("name", info.id));
-    let place = rect.expand2(vec2(0.0, 2.0));
-    ui.painter().rect_filled(place, 3.0, controls.palette.raised);
-    let edit = TextEdit::singleline(&mut naming.text).id(field).font(font(SMALL)).margin(vec2(2.0, 0.0));
-    let response = ui.put(place, edit.frame(egui::Frame::NONE).align(Align2::CENTER_CENTER));
-    name_field(&response, &format!("Name of {}", info.name), &naming.text);
-    if !naming.is_open {
-        naming.is_open = true;
-        take_over(ui, field, &naming.text);
-    } else if response.lost_focus() {
-        if !ui.input(|input| input.key_pressed(Key::Escape)) {
-            controls.name_macro(info, &naming.text);
-        }
-        return true;
-    } else if !response.has_focus() {
-        // It was left by way of another page.
-        return true;
-    }
-    controls.interaction.naming = Some(naming);
     true
 }

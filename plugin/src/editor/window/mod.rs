@@ -271,7 +271,7 @@ impl Window {
             self.motion.leave();
         }
         if seen.is_none() {
-            controls.interaction.typing = None;
+            (controls.interaction.typing, controls.interaction.naming) = (None, None);
         }
         let (mut reads, mut picked) = (false, Vec::new());
         match self.over {
@@ -309,7 +309,7 @@ impl Window {
                 }
             }
             None if self.face == Face::Play => {
-                let level = levels[0].max(levels[1]).min(1.0);
+                let level = levels[0].now.max(levels[1].now).min(1.0);
                 let sounding = (&energies[..], level);
                 if let Some(message) = self.play.show(ui, layout.page(), &self.shown, sounding, &mut controls) {
                     self.news = Some(Err(message));

@@ -1,8 +1,8 @@
 //! The menu of a parameter: type, reset, a controller, modulate, and the host's own menu.
 
 use crate::editor::binding;
-use crate::editor::controls::Controls;
-use crate::editor::controls::gestures;
+use crate::editor::controls::naming::{self, macro_number};
+use crate::editor::controls::{Controls, gestures};
 use crate::editor::routes;
 use crate::editor::routes::learn;
 use crate::editor::widgets::typing::type_value;
@@ -20,9 +20,8 @@ pub(crate) fn show(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
         type_value(info, controls);
         ui.close();
     }
-    if controls.can_name(info) && ui.button(format!("Name {}", info.name)).clicked() {
-        let Playable::Preset(preset) = controls.params.state().playable else { return };
-        controls.begin_naming(info, preset.guide.macro_name(info.id).unwrap_or_default().to_owned());
+    if controls.is_preset && macro_number(info).is_some() && ui.button(format!("Name {}", info.name)).clicked() {
+        naming::begin(info, controls);
         ui.close();
     }
     if ui.button(format!("Reset to {}", controls.written(info, info.default))).clicked() {

@@ -4,8 +4,8 @@ pub(crate) mod face;
 pub(super) mod menu;
 
 use super::text::line;
-use super::typing::{named, type_value, typed};
-use crate::editor::controls::Controls;
+use super::typing::{type_value, typed};
+use crate::editor::controls::{Controls, naming};
 use crate::editor::routes::{Ring, carry};
 use crate::editor::theme::SMALL;
 use crate::marks::Mark;
@@ -128,7 +128,7 @@ pub(crate) fn show(
     face::paint(ui.painter(), parts.face, palette, &face);
     // In the gap of the arc.
     face::paint_mark(ui.painter(), parts.face.center_bottom() - vec2(0.0, 3.0), turned.mark.as_ref(), palette);
-    if !named(ui, parts.name, info, controls) {
+    if !naming::field(ui, parts.name, info, controls) {
         line(ui.painter(), parts.name, Align2::CENTER_CENTER, name, SMALL, palette.text);
     }
     show_value(ui, parts.value, Align2::CENTER_CENTER, info, &turned, controls);
