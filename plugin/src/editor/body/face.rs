@@ -3,8 +3,7 @@
 use crate::editor::theme::Palette;
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Painter, Pos2, Rect, Shape, Stroke};
-use sprung::sound::bodies::Point;
-use sprung_picture::{Figure, Ink, Picture};
+use sprung_picture::{Figure, Ink, Picture, Pose};
 
 /// Space between a body and the frame that says that it is only a guess.
 const AROUND: f32 = 14.0;
@@ -17,27 +16,19 @@ pub(crate) fn paint_guess(painter: &Painter, rect: Rect, figure: &Figure, palett
     painter.extend(Shape::dashed_line(&corners, Stroke::new(1.0, palette.muted), 6.0, 5.0));
 }
 
-/// Paints the body. Displacements are in the picture's unit, none for a body at rest; `strike` is the place where the body is
-/// struck.
-pub(crate) fn paint(
-    painter: &Painter,
-    rect: Rect,
-    figure: &Figure,
-    displacements: &[f32],
-    strike: Option<Point>,
-    palette: &Palette,
-) {
-    paint_picture(painter, Picture::of(rect, figure, displacements, strike, palette.accent), palette);
+/// Paints the body.
+pub(crate) fn paint(painter: &Painter, rect: Rect, figure: &Figure, pose: &Pose, palette: &Palette) {
+    paint_picture(painter, Picture::of(rect, figure, pose, palette.accent), palette);
 }
 
 /// Paints a body at rest.
 pub(crate) fn paint_still(painter: &Painter, rect: Rect, figure: &Figure, palette: &Palette) {
-    paint(painter, rect, figure, &[], None, palette);
+    paint(painter, rect, figure, &Pose::default(), palette);
 }
 
 /// Paints a body that stands on the lower edge of the rectangle.
 pub(crate) fn paint_standing(painter: &Painter, rect: Rect, figure: &Figure, palette: &Palette) {
-    let picture = Picture::of(rect, figure, &[], None, palette.accent);
+    let picture = Picture::of(rect, figure, &Pose::default(), palette.accent);
     paint_picture(painter, picture.standing(rect.bottom()), palette);
 }
 
@@ -58,6 +49,8 @@ fn paint_picture(painter: &Painter, picture: Picture, palette: &Palette) {
         let stroke = match ink {
             Ink::Edge => Stroke::new(1.2, palette.text.gamma_multiply(0.5)),
             Ink::Fine => Stroke::new(1.0, palette.text.gamma_multiply(0.25)),
+            Ink::Node => Stroke::new(1.0, palette.text.gamma_multiply(0.6)),
+            Ink::Joint => Stroke::new(1.3, palette.muted),
         };
         painter.add(Shape::line(points, stroke));
     }

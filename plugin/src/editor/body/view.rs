@@ -13,7 +13,7 @@ use crate::loaded::Loaded;
 use egui::{CursorIcon, Id, Rect, Role, Sense, Ui, WidgetInfo};
 use sprung::params::Param;
 use sprung::sound::bodies::Point;
-use sprung_picture::{BodyShape, Form, Origin, REACH, Swing};
+use sprung_picture::{BodyShape, Form, Origin, Pose, REACH, Swing};
 use std::sync::Arc;
 
 /// A drag of the strike's place in progress.
@@ -79,7 +79,8 @@ impl BodyView {
         let seconds = (!controls.params.view().less_motion).then_some(controls.seconds);
         let moved = self.swing.advance(seconds, &shape, energies, rect);
         let place = self.drag.as_ref().map(|drag| drag.point).or(strike(&shape, shown, controls));
-        face::paint(ui.painter(), rect, &shape.figure, &moved, place, controls.palette);
+        let pose = Pose { displacements: &moved, nodal: shape.lines_of(energies), strike: place };
+        face::paint(ui.painter(), rect, &shape.figure, &pose, controls.palette);
         if shape.origin == Origin::Table && shown.preset().is_some() {
             face::paint_guess(ui.painter(), rect, &shape.figure, controls.palette);
         }
@@ -107,7 +108,7 @@ impl BodyView {
         let found = pointer
             .or(response.interact_pointer_pos())
             .or(response.hover_pos())
-            .map(|pointer| shape.figure.form.nearest(rect, pointer));
+            .map(|pointer| shape.nearest(rect, pointer));
         let point = found.map(|(point, _)| shape.confined(point));
         if let Some(point) = point.filter(|_| found.is_some_and(|(_, distance)| distance <= REACH)) {
             let title = describe(point, shape).replacen("struck", "a click strikes", 1);
