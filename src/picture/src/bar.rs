@@ -1,9 +1,9 @@
 //! Bars, plates and boxes: an upper face that bends, and the sides in front and at the right end below it.
 
 use crate::figure::{Bar, Figure};
-use crate::form::lying;
 use crate::light::{Facet, Finish, Gloss};
 use crate::mesh::{ABOVE, Grid, Mesh, Moved};
+use crate::view::lying;
 use ecolor::Color32;
 use emath::Vec2;
 use std::f32::consts::TAU;
@@ -39,15 +39,9 @@ pub(crate) fn add_bar(mesh: &mut Mesh, figure: &Figure, bar: &Bar, moved: &Moved
         });
         mesh.add(&bevel, seen);
     }
-    let thickness = |along: f32| {
-        let [end, middle] = bar.thickness;
-        // The arch below a bar ends before its ends.
-        let share = (1.0 - along * along / 0.52).max(0.0);
-        end + (middle - end) * share * share * (3.0 - 2.0 * share)
-    };
     let front = grid(3, &|column, row| {
         let from = 0.02 + bevelled;
-        let down = from + (thickness(along(column)) - from) * row as f32 / 2.0;
+        let down = from + (thickness(bar, along(column)) - from) * row as f32 / 2.0;
         lying([along(column), bar.width], moved.by(column) - down)
     });
     mesh.add(&front, seen);
@@ -76,12 +70,33 @@ pub(crate) fn add_bar(mesh: &mut Mesh, figure: &Figure, bar: &Bar, moved: &Moved
     }
 }
 
+/// A line across a bar and down its front.
+pub(crate) fn across(bar: &Bar, along: f32, up: f32) -> [[f32; 3]; 6] {
+    let top = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|share| lying([along, share * bar.width], up - 0.02 * share * share));
+    let below = lying([along, bar.width], up - thickness(bar, along));
+    [top[0], top[1], top[2], top[3], top[4], below]
+}
+
+/// The thickness of a bar at a place.
+fn thickness(bar: &Bar, along: f32) -> f32 {
+    let [end, middle] = bar.thickness;
+    // The arch below a bar ends before its ends.
+    let share = (1.0 - along * along / 0.52).max(0.0);
+    end + (middle - end) * share * share * (3.0 - 2.0 * share)
+}
+
 /// Adds a plate or a box.
 pub(crate) fn add_slab(mesh: &mut Mesh, figure: &Figure, thickness: f32, moved: &Moved) {
     let [columns, rows] = figure.grid;
     let places = (0..columns * rows).map(|number| figure.form.in_space(figure.points[number], moved.by(number)));
     let top = Grid::new(places.collect(), columns);
-    let seen = |number: usize, facet: &Facet| grained(&figure.finish, facet, moved.glow(number));
+    // A flat face shines in stripes.
+    let seen = |number: usize, facet: &Facet| {
+        let colour = grained(&figure.finish, facet, moved.glow(number));
+        let shine = 0.5 + 0.5 * Vec2::angled(4.2 * facet.at[0] - 2.4 * facet.at[1] + 0.8).y;
+        let strength = if matches!(figure.finish.gloss, Gloss::Metal | Gloss::Glass) { 0.24 } else { 0.0 };
+        colour.lerp_to_gamma(Color32::WHITE, strength * shine * shine * (1.0 - moved.glow(number).1))
+    };
     let mut side = |edge: Vec<usize>| {
         let count = edge.len();
         let place = |number: usize| {

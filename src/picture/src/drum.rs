@@ -1,9 +1,10 @@
 //! The shell below the head of a drum, its hoop, and the wires of a snare drum.
 
 use crate::figure::Drum;
-use crate::form::{Form, LOOK, View};
+use crate::form::Form;
 use crate::light::Finish;
 use crate::mesh::{ABOVE, Grid, Mesh, Moved};
+use crate::view::{LOOK, View};
 use emath::{Pos2, Rect, Vec2, vec2};
 use std::f32::consts::TAU;
 

@@ -4,6 +4,7 @@ use crate::form::Form;
 use crate::light::{Finish, Gloss, tint};
 use sprung::preset::Family;
 use sprung::sound::bodies::{BedKind, Body, Model, Point};
+use sprung::sound::pairs::{Link, Pair};
 
 /// What is painted of a body.
 pub struct Figure {
@@ -18,6 +19,15 @@ pub struct Figure {
     pub(crate) build: Build,
     /// What is below a head in a small picture.
     pub drum: Option<Drum>,
+    /// The body that is joined to it.
+    pub(crate) second: Option<Box<Second>>,
+}
+
+/// A joined body.
+pub(crate) struct Second {
+    pub figure: Figure,
+    /// Whether the two move together where they are joined.
+    pub is_rigid: bool,
 }
 
 /// How a body is built around its points.
@@ -31,6 +41,8 @@ pub(crate) enum Build {
     Tube(Tube),
     /// A plate or a box of this thickness.
     Slab(f32),
+    /// A cymbal over another one, on a rod.
+    Hat,
 }
 
 /// A bar; its lengths are in halves of its own.
@@ -114,7 +126,28 @@ impl Figure {
     /// The figure of a body in a picture of the size of a letter or two.
     pub fn small(body: &Body) -> Self {
         let form = Form::of(&body.model);
-        Self::with_grid(body, form, form.small_grid())
+        let figure = Self::with_grid(body, form, form.small_grid());
+        // At this size a bar would look like a line.
+        let build = match figure.build {
+            Build::Bar(bar) => {
+                Build::Bar(Bar { width: 1.25 * bar.width, thickness: bar.thickness.map(|end| 1.3 * end), ..bar })
+            }
+            Build::Tube(tube) => Build::Tube(Tube { radius: tube.radius.map(|end| 1.35 * end), ..tube }),
+            other => other,
+        };
+        Self { build, ..figure }
+    }
+
+    /// The figure of a model's tile, by its name. That of a round plate is a gong.
+    pub fn tile(model: &str) -> Self {
+        let body = Body::new(Model::find(model).cloned().unwrap_or(Model::String));
+        Self::small(&body).told_apart(Some(Family::Cymbal), &["gong".to_owned()])
+    }
+
+    /// The figure of the first of two joined bodies in a large picture.
+    pub(crate) fn joined(self, pair: &Pair) -> Self {
+        let second = Second { figure: Self::small(&pair.second), is_rigid: pair.link == Link::Rigid };
+        Self { second: Some(Box::new(second)), ..self }
     }
 
     /// The figure of a body in a sound of this family: a drum has its shell, a gong its boss, a cymbal its small bell, and a wind instrument
@@ -124,7 +157,8 @@ impl Figure {
         let is_plate = self.form == Form::Round && self.build != Build::Thin;
         match family {
             Some(Family::Cymbal) if is_plate && has("gong") => self.domed(Form::Gong),
-            Some(Family::Cymbal | Family::Hat | Family::Bell) if is_plate => self.domed(Form::Cymbal),
+            Some(Family::Hat) if is_plate => Self { build: Build::Hat, ..self.domed(Form::Cymbal) },
+            Some(Family::Cymbal | Family::Bell) if is_plate => self.domed(Form::Cymbal),
             Some(Family::Wind) if has("flute") => Self { finish: Finish::of("steel"), ..self },
             Some(Family::Wind) if has("reed") && !has("sax") => Self { finish: Finish::of("rosewood"), ..self },
             _ if self.form == Form::Round && !is_plate => Self { drum: Drum::of(family), ..self },
@@ -151,6 +185,6 @@ impl Figure {
             other => Finish::of(other),
         };
         let build = Build::of(&body.model);
-        Self { form, grid, points: Form::points(grid), finish, build, drum: None }
+        Self { form, grid, points: Form::points(grid), finish, build, drum: None, second: None }
     }
 }

@@ -1,16 +1,10 @@
 //! The forms of bodies in the picture: where their points are at rest, and which way they move.
 
 use crate::outline::{BELL, BOWL, CYMBAL, GLASS, GONG, along};
+use crate::view::{LOOK, TURN, View, lying};
 use emath::{Pos2, Rect, Vec2, vec2};
 use sprung::sound::bodies::{Model, Point};
 use std::f32::consts::TAU;
-
-/// How steeply the picture looks down on a body: sine and cosine of the angle.
-pub(crate) const LOOK: [f32; 2] = [0.5, 0.866];
-/// The direction from which the picture looks.
-pub(crate) const VIEW: [f32; 3] = [0.0, LOOK[1], LOOK[0]];
-/// Which way bars, tubes and plates lie, whose right end is nearer to the viewer: cosine and sine of the angle.
-pub(crate) const TURN: [f32; 2] = [0.94, 0.34];
 
 /// The form of a body. The coordinates of its points are those of [`Model`]: `x` and `y` from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,22 +41,6 @@ struct Place {
     normal: [f32; 3],
 }
 
-/// How places in space are seen in a picture.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct View {
-    /// Where the origin of space is.
-    pub origin: Pos2,
-    /// Size of the unit in pixels.
-    pub unit: f32,
-}
-
-impl View {
-    /// Where a place in space is in the picture.
-    pub(crate) fn at(&self, [x, y, z]: [f32; 3]) -> Pos2 {
-        self.origin + self.unit * vec2(x, y * LOOK[0] - z * LOOK[1])
-    }
-}
-
 impl Form {
     /// The form of a model.
     pub fn of(model: &Model) -> Self {
@@ -90,6 +68,30 @@ impl Form {
         matches!(self, Self::Bell | Self::HandBell)
     }
 
+    /// Half its width, in the picture's unit.
+    pub(crate) fn half_width(self) -> f32 {
+        match self {
+            Self::Plate { aspect } => across(aspect)[0],
+            Self::Bell | Self::HandBell => 0.72,
+            Self::Bowl => 0.96,
+            Self::Glass => 0.53,
+            _ => 1.0,
+        }
+    }
+
+    /// Where another body is joined to it, at its right, with its right end displaced.
+    pub(crate) fn joint(self, displacement: f32) -> [f32; 3] {
+        match self {
+            Self::Line => self.in_space(Point { x: 1.0, y: 0.0 }, displacement),
+            Self::Rod => self.in_space(Point { x: 1.0, y: 0.0 }, displacement - 0.05),
+            Self::Plate { .. } => self.in_space(Point { x: 1.0, y: 0.5 }, -0.02),
+            Self::Bell | Self::HandBell => [0.7, 0.0, 0.05],
+            Self::Bowl => [0.86, 0.0, 0.42],
+            Self::Glass => [0.41, 0.0, 0.01],
+            _ => [1.0, 0.0, -0.02],
+        }
+    }
+
     /// Whether one looks into it.
     pub(crate) fn is_open(self) -> bool {
         matches!(self, Self::Bowl | Self::Glass)
@@ -114,8 +116,8 @@ impl Form {
             Self::Line => [33, 1],
             Self::Rod => [9, 1],
             Self::Round => [3, 25],
-            Self::Cymbal | Self::Gong => [8, 25],
-            Self::Plate { .. } => [3, 3],
+            Self::Cymbal | Self::Gong => [9, 21],
+            Self::Plate { .. } => [9, 3],
             Self::Bell | Self::HandBell => [10, 25],
             Self::Bowl | Self::Glass => [8, 25],
         }
@@ -186,8 +188,7 @@ impl Form {
             Self::Cymbal => ((width * 0.9).min(height / 0.8), 0.02),
             Self::Gong => ((width * 0.9).min(height / 0.86), -0.06),
             Self::Plate { aspect } => {
-                let [x, y] = sides(aspect);
-                let [across, down] = [x * TURN[0] + y * TURN[1], x * TURN[1] + y * TURN[0]];
+                let [across, down] = across(aspect);
                 ((width * 0.95 / across).min(height / (0.28 + down * LOOK[0])), -0.02)
             }
             Self::Bell => ((width * 0.85).min(height / 0.92), 0.53),
@@ -253,10 +254,10 @@ fn sides(aspect: f32) -> [f32; 2] {
     if aspect >= 1.0 { [1.0, 1.0 / aspect] } else { [aspect, 1.0] }
 }
 
-/// A place of a body that lies turned: along it, across it to the viewer, and up.
-pub(crate) fn lying([along, across]: [f32; 2], up: f32) -> [f32; 3] {
-    let [cosine, sine] = TURN;
-    [along * cosine - across * sine, along * sine + across * cosine, up]
+/// Half the width and depth of a plate as it lies.
+fn across(aspect: f32) -> [f32; 2] {
+    let [x, y] = sides(aspect);
+    [x * TURN[0] + y * TURN[1], x * TURN[1] + y * TURN[0]]
 }
 
 #[cfg(test)]

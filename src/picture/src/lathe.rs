@@ -2,17 +2,12 @@
 
 use crate::figure::{Build, Figure};
 use crate::form::Form;
-use crate::light::{Facet, Finish};
-use crate::mesh::{Grid, Mesh, Moved};
-use crate::outline::{CROWN, GRIP, STEM, along};
+use crate::light::Finish;
+use crate::mesh::{ABOVE, Grid, Mesh, Moved};
+use crate::outline::{CROWN, GRIP, ROD, STEM, along};
 use ecolor::Color32;
 use emath::Vec2;
 use std::f32::consts::TAU;
-
-/// How far the rim of a gong is bent down, and how far the middle of its edge is drawn in.
-const RIM: [f32; 2] = [0.17, 0.02];
-/// Thickness of a cymbal's edge.
-const EDGE: f32 = 0.03;
 
 /// Adds the surface of a body, and what belongs to it.
 pub(crate) fn add(mesh: &mut Mesh, figure: &Figure, moved: &Moved) {
@@ -26,47 +21,49 @@ pub(crate) fn add(mesh: &mut Mesh, figure: &Figure, moved: &Moved) {
         ..Grid::new((0..columns * rows).map(places).collect(), columns)
     };
     let rim = |row: usize| row * columns + columns - 1;
-    let (depth, drawn_in) = match (form, figure.build) {
-        (Form::Gong, _) => (RIM[0], RIM[1]),
-        (Form::Cymbal, _) => (EDGE, 0.0),
-        (Form::Round, Build::Slab(thickness)) => (thickness, 0.0),
-        _ => (0.0, 0.0),
-    };
-    if depth > 0.0 {
-        let steps = if form == Form::Gong { 4 } else { 2 };
-        let edge = |number: usize| {
+    let mut band = |heights: &[f32], radii: &[f32], finish: Finish| {
+        let steps = heights.len();
+        let place = |number: usize| {
             let [x, y, z] = surface.places[rim(number / steps)];
-            let share = (number % steps) as f32 / (steps - 1) as f32;
-            let wide = 1.0 - drawn_in * share * share;
-            [x * wide, y * wide, z - depth * share]
+            let radius = radii[number % steps];
+            [x * radius, y * radius, z + heights[number % steps]]
         };
-        let edge = Grid { is_closed: true, ..Grid::new((0..steps * rows).map(edge).collect(), steps) };
-        mesh.add(&edge, |number, facet| figure.finish.seen(facet, moved.glow(rim(number / steps))));
+        let band = Grid { is_closed: true, ..Grid::new((0..steps * rows).map(place).collect(), steps) };
+        mesh.add(&band, |number, facet| finish.seen(facet, moved.glow(rim(number / steps))));
+    };
+    match (form, figure.build) {
+        (Form::Gong, _) => band(&[0.0, -0.06, -0.12, -0.17], &[1.0, 1.0, 0.99, 0.975], figure.finish),
+        (Form::Cymbal, Build::Hat) => {
+            band(&[-0.08, -0.11], &[1.0, 1.0], figure.finish);
+            band(&[-0.03, -0.08], &[0.96, 0.96], Finish::of("rubber"));
+            band(&[0.0, -0.03], &[1.0, 1.0], figure.finish);
+        }
+        (Form::Cymbal, _) => band(&[0.0, -0.03], &[1.0, 1.0], figure.finish),
+        (Form::Round, Build::Slab(thickness)) => band(&[0.0, -thickness], &[1.0, 1.0], figure.finish),
+        _ => {}
     }
     // Rings that the lathe has left.
     let ring = |column: usize| if is_turned && figure.is_large() { 0.03 * ((7 * column) % 5) as f32 } else { 0.0 };
     mesh.add(&surface, |number, facet| {
         figure.finish.seen(facet, moved.glow(number)).lerp_to_gamma(Color32::BLACK, ring(number % columns))
     });
-    let mut turned =
-        |outline: &[[f32; 2]], finish: Finish| turn(mesh, outline, figure, |facet| finish.seen(facet, moved.still()));
-    match form {
-        Form::Bell => turned(&CROWN, figure.finish),
-        Form::HandBell => turned(&GRIP, Finish::of("rosewood")),
-        Form::Glass => turned(&STEM, figure.finish),
-        _ => {}
-    }
+    let (outline, finish, lift): (&[[f32; 2]], _, _) = match form {
+        Form::Bell => (&CROWN, figure.finish, ABOVE),
+        Form::HandBell => (&GRIP, Finish::of("rosewood"), ABOVE),
+        Form::Glass => (&STEM, figure.finish, -ABOVE),
+        Form::Cymbal if figure.build == Build::Hat => (&ROD, Finish::of("steel"), ABOVE),
+        _ => return,
+    };
+    mesh.add(&turned(outline, lift, figure.is_large()), |_, facet| finish.seen(facet, moved.still()));
 }
 
-/// Adds a part of its own, with its outline from above.
-fn turn(mesh: &mut Mesh, outline: &[[f32; 2]], figure: &Figure, colour: impl Fn(&Facet) -> Color32) {
-    let columns = if figure.is_large() { 2 * outline.len() + 1 } else { outline.len() };
-    let rows = if figure.is_large() { 33 } else { 13 };
+/// A part of its own, with its outline from above.
+fn turned(outline: &[[f32; 2]], lift: f32, is_large: bool) -> Grid {
+    let (columns, rows) = if is_large { (2 * outline.len() + 1, 33) } else { (outline.len(), 13) };
     let place = |number: usize| {
         let [height, radius] = along(outline, (number % columns) as f32 / (columns - 1) as f32);
         let around = radius * Vec2::angled(TAU * (number / columns) as f32 / (rows - 1) as f32);
         [around.x, around.y, height]
     };
-    let part = Grid { is_closed: true, ..Grid::new((0..columns * rows).map(place).collect(), columns) };
-    mesh.add(&part, |_, facet| colour(facet));
+    Grid { is_closed: true, lift, ..Grid::new((0..columns * rows).map(place).collect(), columns) }
 }

@@ -9,19 +9,22 @@ mod form;
 mod lathe;
 mod light;
 mod mesh;
+mod nodal;
 mod origin;
 mod outline;
 mod picture;
 pub mod play;
+mod second;
 mod shape;
 mod swing;
 mod tube;
+mod view;
 
 pub use figure::{Drum, Figure};
 pub use form::Form;
 pub use light::tint;
 pub use origin::{Origin, model_name};
-pub use picture::{Ink, Picture};
+pub use picture::{Ink, Picture, Pose};
 pub use shape::{BodyShape, or_suggested, small_figure, suggested_body};
 pub use swing::Swing;
 

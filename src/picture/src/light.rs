@@ -1,6 +1,6 @@
 //! How materials look in a light from the left above.
 
-use crate::form::VIEW;
+use crate::view::VIEW;
 use ecolor::{Color32, Rgba};
 
 /// Where the light comes from: left, in front, above; a unit vector.
@@ -70,8 +70,8 @@ impl Finish {
                 let above = smooth((mirrored[2] + 0.15) / 1.0);
                 let window = (mirrored[0] + 0.55 * mirrored[2] - 0.1) / 0.2;
                 let window = squared(1.0 - 0.25 * window * window, 2);
-                let light = 0.05 + 0.07 * sky + 0.46 * lit + 0.32 * above + 0.16 * window + 0.42 * squared(glance, 2);
-                (light + 0.5 * streak - 0.12 * slant, 0.4 * squared(glance, 5) + 0.08 * streak * streak)
+                let light = 0.08 + 0.07 * sky + 0.46 * lit + 0.31 * above + 0.1 * window + 0.42 * squared(glance, 2);
+                (light + 0.5 * streak - 0.1 * slant, 0.4 * squared(glance, 5) + 0.08 * streak * streak)
             }
             Gloss::Glass => {
                 (0.1 + 0.14 * lit + 0.75 * slant * slant, 0.75 * squared(glance, 5) + 0.1 * slant * slant * slant)

@@ -1,7 +1,7 @@
 //! Grids of places in space, which become triangles, the farthest first, and the lines of their outline.
 
-use crate::form::{VIEW, View};
 use crate::light::{Facet, cross, dot, unit};
+use crate::view::{VIEW, View};
 use ecolor::Color32;
 use emath::Pos2;
 

@@ -41,10 +41,10 @@ pub(crate) const STEM: [[f32; 2]; 9] = [
 /// A cymbal from its middle to its rim: a small bell, and the bow.
 pub(crate) const CYMBAL: [[f32; 2]; 12] = [
     [0.25, 0.0],
-    [0.235, 0.0909],
-    [0.185, 0.1818],
-    [0.132, 0.2727],
-    [0.118, 0.3636],
+    [0.244, 0.0909],
+    [0.208, 0.1818],
+    [0.14, 0.2727],
+    [0.116, 0.3636],
     [0.108, 0.4545],
     [0.096, 0.5455],
     [0.081, 0.6364],
@@ -53,11 +53,13 @@ pub(crate) const CYMBAL: [[f32; 2]; 12] = [
     [0.024, 0.9091],
     [0.0, 1.0],
 ];
+/// The rod through a pair of hats, from its end down.
+pub(crate) const ROD: [[f32; 2]; 4] = [[0.6, 0.0], [0.6, 0.022], [0.3, 0.022], [0.24, 0.05]];
 /// A gong from its middle to the bend of its rim: a boss, and a nearly flat face.
 pub(crate) const GONG: [[f32; 2]; 12] = [
     [0.2, 0.0],
-    [0.193, 0.0909],
-    [0.165, 0.1818],
+    [0.197, 0.0909],
+    [0.175, 0.1818],
     [0.105, 0.2727],
     [0.068, 0.3636],
     [0.062, 0.4545],

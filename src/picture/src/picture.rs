@@ -1,13 +1,18 @@
 //! A body as it is painted: its parts in a light from the left above, which glow where they move.
 
-use crate::figure::{Build, Figure};
+use crate::figure::{Build, Figure, Second};
 use crate::form::Form;
 use crate::mesh::{Mesh, Moved};
+use crate::nodal::{self, Between};
 use crate::outline::MOULDINGS;
-use crate::{bar, drum, lathe, tube};
+use crate::view::View;
+use crate::{bar, drum, lathe, second, tube};
 use ecolor::Color32;
-use emath::{Pos2, Rect, vec2};
+use emath::{Pos2, Rect, lerp, pos2, vec2};
 use sprung::sound::bodies::Point;
+
+/// Half the length of the mark where a string does not move, in pixels.
+const TICK: f32 = 6.0;
 
 /// A body as it is painted, in the order of its parts.
 #[derive(Debug, Default)]
@@ -33,15 +38,30 @@ pub enum Ink {
     Edge,
     /// An ornament.
     Fine,
+    /// Where a mode does not move.
+    Node,
+    /// What joins two bodies.
+    Joint,
+}
+
+/// How a body is now.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pose<'a> {
+    /// The displacements of its points in the form's unit; none at rest.
+    pub displacements: &'a [f32],
+    /// The values at its points of the mode whose lines without motion are drawn.
+    pub nodal: Option<&'a [f32]>,
+    /// Where it is struck, if that is shown.
+    pub strike: Option<Point>,
 }
 
 impl Picture {
-    /// The picture of a figure in a rectangle. Displacements of its points are in the form's unit, none for a body at rest. What moves
-    /// takes on the colour `glow`. Allocates.
-    pub fn of(rect: Rect, figure: &Figure, displacements: &[f32], strike: Option<Point>, glow: Color32) -> Self {
+    /// The picture of a figure in a rectangle. What moves takes on the colour `glow`. Allocates.
+    pub fn of(rect: Rect, figure: &Figure, pose: &Pose, glow: Color32) -> Self {
         let form = figure.form;
-        let rect = figure.drum.map_or(rect, |drum| drum::head(rect, drum));
-        let moved = Moved { displacements, reach: form.reach(rect), glow };
+        let whole = rect;
+        let rect = figure.drum.map_or_else(|| second::first_place(rect, figure), |drum| drum::head(rect, drum));
+        let moved = Moved { displacements: pose.displacements, reach: form.reach(rect), glow };
         let view = form.view(rect);
         let mut mesh = Mesh::new(view);
         let on = |number: usize| form.on(rect, figure.points[number], moved.by(number));
@@ -65,13 +85,63 @@ impl Picture {
         }
         picture.triangles = mesh.triangles();
         (picture.vertices, picture.outline) = (mesh.vertices, mesh.outline);
-        picture.strike = strike.map(|strike| {
+        if let Some(values) = pose.nodal {
+            picture.nodes(figure, values, &view, &moved);
+        }
+        if let Some(second) = &figure.second {
+            let from = view.at(form.joint(moved.by(figure.points.len() - 1)));
+            picture.join(second, whole, from, glow);
+        }
+        picture.strike = pose.strike.map(|strike| {
             let at = |point| form.on(rect, point, 0.0);
             let far = |number: &usize| (at(figure.points[*number]) - at(strike)).length();
             let nearest = (0..figure.points.len()).min_by(|a, b| far(a).total_cmp(&far(b)));
             form.on(rect, strike, nearest.map_or(0.0, |nearest| moved.by(nearest)))
         });
         picture
+    }
+
+    /// Adds the lines where a mode with these values does not move.
+    fn nodes(&mut self, figure: &Figure, values: &[f32], view: &View, moved: &Moved) {
+        let space = |number: usize| figure.form.in_space(figure.points[number], moved.by(number));
+        let between = |([from, to], share): &Between| view.at(space(*from)).lerp(view.at(space(*to)), *share);
+        let lines: Vec<Vec<Pos2>> = if figure.form.is_line() {
+            let line = |place: &Between| {
+                let ([from, to], share) = *place;
+                let along = lerp(figure.points[from].x as f32..=figure.points[to].x as f32, share);
+                let up = lerp(moved.by(from)..=moved.by(to), share);
+                match figure.build {
+                    Build::Bar(bar) => bar::across(&bar, 2.0 * along - 1.0, up).map(|at| view.at(at)).to_vec(),
+                    Build::Tube(tube) => tube::around(&tube, along, up).map(|at| view.at(at)).to_vec(),
+                    _ => [-TICK, TICK].map(|off| between(place) + vec2(0.0, off)).to_vec(),
+                }
+            };
+            nodal::on_line(values).iter().map(line).collect()
+        } else {
+            let lines = nodal::on_surface(figure.form, &figure.points, values, figure.grid);
+            lines.iter().map(|line| line.iter().map(between).collect()).collect()
+        };
+        self.lines.extend(lines.iter().flat_map(|line| nodal::dashed(line)).map(|dash| (Ink::Node, dash)));
+    }
+
+    /// Adds a joined body, which stands on the same floor.
+    fn join(&mut self, second: &Second, rect: Rect, from: Pos2, glow: Color32) {
+        let floor = self.vertices.iter().map(|(at, _)| at.y).fold(from.y, f32::max);
+        let place = second::second_place(rect);
+        let other = Self::of(place, &second.figure, &Pose::default(), glow).standing(floor.min(rect.bottom()));
+        let ends = other.vertices.iter().map(|(at, _)| *at).chain(other.string.iter().copied());
+        let left = ends.clone().map(|at| at.x).fold(f32::INFINITY, f32::min);
+        let at_left: Vec<f32> = ends.filter(|at| at.x < left + 1.0).map(|at| at.y).collect();
+        let to = pos2(left, at_left.iter().sum::<f32>() / at_left.len().max(1) as f32);
+        self.lines.push((Ink::Joint, second::joint(from, to, 0.055 * place.width(), second.is_rigid)));
+        let first = self.vertices.len() as u32;
+        self.vertices.extend(other.vertices);
+        self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|corner| first + corner)));
+        self.outline.extend(other.outline);
+        self.lines.extend(other.lines);
+        if !other.string.is_empty() {
+            self.lines.push((Ink::Edge, other.string));
+        }
     }
 
     /// Adds the edge of a turned form, and a bell's ornaments.
@@ -110,7 +180,37 @@ impl Picture {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::BodyShape;
     use sprung::preset::Preset;
+
+    #[test]
+    fn a_joined_body_stands_at_the_right_and_the_loudest_mode_has_its_lines() {
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(400.0, 300.0));
+        let Preset { patch, guide, tags, .. } = Preset::find("Resonator Marimba").unwrap();
+        let shape = BodyShape::of(&patch.modes, guide.family, tags);
+        let picture = |energies: &[f32]| {
+            let pose = Pose { nodal: shape.lines_of(energies), ..Pose::default() };
+            Picture::of(rect, &shape.figure, &pose, Color32::WHITE)
+        };
+        let places = |ink: Ink| {
+            let lines = picture(&[]).lines.into_iter().filter(|(other, _)| *other == ink).collect::<Vec<_>>();
+            lines.into_iter().flat_map(|(_, line)| line).collect::<Vec<Pos2>>()
+        };
+        let joint = places(Ink::Joint);
+        let first = shape.place(rect);
+        let end = shape.figure.form.on(first, Point { x: 1.0, y: 0.0 }, 0.0);
+        assert!((joint[0] - end).length() < 12.0 && joint[joint.len() - 1].x > end.x, "{end:?}");
+        assert!(rect.contains_rect(Rect::from_points(&joint)) && joint.len() > 50, "a coil");
+        let (nearest, _) = shape.nearest(rect, end);
+        assert!(nearest.x > 0.99, "{nearest:?}");
+        // The lowest mode of a bar rests at 22.4 % from each end.
+        let still = [0.224, 0.776].map(|x| shape.figure.form.on(first, Point { x, y: 0.0 }, 0.0));
+        for at in still {
+            assert!(places(Ink::Node).iter().any(|place| (*place - at).length() < 8.0), "{at:?}");
+        }
+        let alone = |mode: usize| (0..64).map(|other| if other == mode { 1.0 } else { 0.0 }).collect::<Vec<f32>>();
+        assert!((1..16).any(|mode| shape.lines_of(&alone(mode)) != shape.lines_of(&[])), "the loudest mode's");
+    }
 
     #[test]
     fn an_outline_reaches_as_far_as_its_body() {
@@ -133,7 +233,7 @@ mod tests {
             let figure = crate::small_figure(&patch.modes, guide.family, tags);
             let moved: Vec<f32> = (0..figure.points.len()).map(|number| (number % 7) as f32).collect();
             for displacements in [&[], &moved[..]] {
-                let picture = Picture::of(rect, &figure, displacements, None, Color32::WHITE);
+                let picture = Picture::of(rect, &figure, &Pose { displacements, ..Pose::default() }, Color32::WHITE);
                 let places: Vec<Pos2> = picture.vertices.iter().map(|(at, _)| *at).collect();
                 let ends: Vec<Pos2> = picture.outline.iter().flat_map(|(ends, _)| *ends).collect();
                 assert_eq!(Rect::from_points(&ends), Rect::from_points(&places), "{name}");

@@ -1,7 +1,10 @@
 //! The body that is drawn for a sound: its form, and each mode's shape on it.
 
 use crate::figure::Figure;
+use crate::nodal;
 use crate::origin::{Origin, model_name};
+use crate::second::first_place;
+use emath::{Pos2, Rect};
 use sprung::internals::library::tagged_material;
 use sprung::patch::ModeTable;
 use sprung::preset::Family;
@@ -30,13 +33,21 @@ pub struct BodyShape {
 
 /// The body that a table of modes is drawn as: of a model that suits its family, and of the material that its tags name.
 pub fn suggested_body(family: Option<Family>, tags: &[String]) -> Body {
+    let has = |tag: &str| tags.iter().any(|other| other == tag);
     let id = match family {
         Some(Family::Kick | Family::Snare | Family::Tom | Family::HandDrum) => "membrane",
         Some(Family::Hat | Family::Cymbal) => "free_disc",
         Some(Family::Percussion) => "free_bar",
+        Some(Family::Mallet) if has("pluck") => "tine",
+        Some(Family::Mallet) if has("keys") || has("bell") || has("glass") => "free_bar",
+        Some(Family::Mallet) if has("metal") => "vibraphone",
         Some(Family::Mallet) => "marimba",
+        Some(Family::Bell) if has("metal") => "hand_bell",
         Some(Family::Bell) => "church_bell",
+        Some(Family::Wind) if has("brass") || has("sax") => "cone",
         Some(Family::Wind) => "open_tube",
+        Some(Family::Pad | Family::Effect) if has("glass") => "glass",
+        Some(Family::Keys) if has("metal") || has("electric") => "tine",
         Some(Family::Effect) => "free_plate",
         _ => "string",
     };
@@ -88,6 +99,10 @@ impl BodyShape {
             }
         };
         let figure = Figure { drum: None, ..Figure::of(&body).told_apart(family, tags) };
+        let figure = match origin.pair() {
+            Some(pair) => figure.joined(pair),
+            None => figure,
+        };
         let form = figure.form;
         let most = DRAWN[usize::from(!form.is_line())];
         // A bed's modes depend on how many there are.
@@ -129,6 +144,26 @@ impl BodyShape {
             (Some(body), form) if form.is_line() => Point { y: body.strike.y, ..point },
             (Some(body), form) if form.is_bell() => Point { x: body.strike.x, ..point },
             (Some(_), _) => point,
+        }
+    }
+
+    /// Where the body that is struck is drawn in a picture: beside the one that is joined to it.
+    pub fn place(&self, rect: Rect) -> Rect {
+        first_place(rect, &self.figure)
+    }
+
+    /// The point of the body at rest that is nearest to a place in the picture, and how far away it is in pixels.
+    pub fn nearest(&self, rect: Rect, place: Pos2) -> (Point, f32) {
+        self.figure.form.nearest(self.place(rect), place)
+    }
+
+    /// The shape of the loudest of the modes; at rest, of the lowest one that has lines where it does not move. None if it has none.
+    pub fn lines_of(&self, energies: &[f32]) -> Option<&[f32]> {
+        let mut shapes = self.shapes.iter().zip(energies.iter().copied().chain(std::iter::repeat(0.0)));
+        let loudest = shapes.clone().max_by(|(_, a), (_, b)| a.total_cmp(b)).filter(|(_, energy)| *energy > 0.0);
+        match loudest {
+            Some((shape, _)) => shape.as_deref().filter(|shape| nodal::has_any(shape)),
+            None => shapes.find_map(|(shape, _)| shape.as_deref().filter(|shape| nodal::has_any(shape))),
         }
     }
 

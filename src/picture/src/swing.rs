@@ -22,7 +22,7 @@ impl Swing {
     /// a share of the greatest since the body was at rest. Allocates.
     pub fn advance(&mut self, seconds: Option<f32>, shape: &BodyShape, energies: &[f32], rect: Rect) -> Vec<f32> {
         let amplitudes = self.amplitudes(seconds, shape, energies);
-        let reach = shape.figure.form.reach(rect);
+        let reach = shape.figure.form.reach(shape.place(rect));
         let soft = |value: f32| reach * value / (1.0 + value * value).sqrt();
         shape.displacements(&amplitudes).into_iter().map(soft).collect()
     }

@@ -1,9 +1,9 @@
 //! Tubes: a round wall, and the open end at the right.
 
 use crate::figure::{Figure, Tube};
-use crate::form::lying;
 use crate::light::{Facet, Finish};
 use crate::mesh::{ABOVE, Grid, Mesh, Moved};
+use crate::view::lying;
 use ecolor::Color32;
 use emath::Vec2;
 use std::f32::consts::TAU;
@@ -11,18 +11,29 @@ use std::f32::consts::TAU;
 /// Thickness of the wall, as a share of the radius.
 const WALL: f32 = 0.14;
 
+/// The half of a ring round a tube that is seen.
+pub(crate) fn around(tube: &Tube, share: f32, up: f32) -> [[f32; 3]; 9] {
+    std::array::from_fn(|step| {
+        // From the far upper side to the near lower one.
+        let around = 1.01 * radius(tube, share) * Vec2::angled(TAU * (step as f32 / 16.0 - 0.16));
+        lying([2.0 * share - 1.0, around.x], up - around.y)
+    })
+}
+
+fn radius(tube: &Tube, share: f32) -> f32 {
+    let [left, right] = tube.radius;
+    // A cone ends in a bell.
+    let flare = if left < right { 0.5 * right * (0..3).fold(share, |power, _| power * power) } else { 0.0 };
+    left + (right - left) * share + flare
+}
+
 /// Adds a tube.
 pub(crate) fn add_tube(mesh: &mut Mesh, figure: &Figure, tube: &Tube, moved: &Moved) {
     let columns = figure.points.len();
     let last = columns - 1;
     let rows = if figure.is_large() { 33 } else { 13 };
     let share = |column: usize| figure.points[column].x as f32;
-    let radius = |share: f32| {
-        let [left, right] = tube.radius;
-        // A cone ends in a bell.
-        let flare = if left < right { 0.5 * right * (0..3).fold(share, |power, _| power * power) } else { 0.0 };
-        left + (right - left) * share + flare
-    };
+    let radius = |share: f32| radius(tube, share);
     let ring = |along: f32, radius: f32, row: usize, up: f32| {
         let around = radius * Vec2::angled(-TAU * row as f32 / (rows - 1) as f32);
         lying([along, around.x], up + around.y)

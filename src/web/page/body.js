@@ -7,7 +7,7 @@ const [AT_REST, PER_SPEED] = [0.7, 0.2];
 const RECENT = 80; // ms
 
 // How the lines of a body are painted: colour, width, strength.
-const INKS = [["string", 2.5, 1], ["--text", 1.2, 0.5], ["--text", 1, 0.25]];
+const INKS = [["string", 2.5, 1], ["--text", 1.2, 0.5], ["--text", 1, 0.25], ["--text", 1, 0.6], ["--muted", 1.3, 1]];
 
 // `player` is the page’s own, with the preset that is heard; `strike(place, velocity)` is called for a click, without a place if the
 // body has none there. Returns functions that take the energies of the modes, and that say that the body is another.

@@ -3,9 +3,9 @@
 use ecolor::Color32;
 use emath::{Pos2, Rect, pos2, vec2};
 use sprung::preset::Preset;
-use sprung::sound::bodies::{Body, Model, Point};
+use sprung::sound::bodies::Point;
 use sprung_picture::play::MODELS;
-use sprung_picture::{BodyShape, Figure, Origin, Picture, REACH, Swing};
+use sprung_picture::{BodyShape, Figure, Origin, Picture, Pose, REACH, Swing};
 
 /// Number of modes that are shown.
 pub(crate) const SHOWN: usize = 64;
@@ -33,14 +33,15 @@ impl Drawn {
         let rect = rect(size);
         let moved = self.swing.advance((seconds >= 0.0).then_some(seconds), &self.shape, &self.energies, rect);
         let strike = self.shape.origin.body().map(|body| body.strike);
-        let picture = Picture::of(rect, &self.shape.figure, &moved, strike, colour(glow));
+        let pose = Pose { displacements: &moved, nodal: self.shape.lines_of(&self.energies), strike };
+        let picture = Picture::of(rect, &self.shape.figure, &pose, colour(glow));
         self.write(&picture)
     }
 
     /// Draws the tile of a model, as [`Drawn::draw`] does.
     pub(crate) fn tile(&mut self, model: usize, size: [f32; 2], glow: u32) -> usize {
-        let model = MODELS.get(model).and_then(|(id, _)| Model::find(id)).cloned().unwrap_or(Model::String);
-        self.write(&Picture::of(rect(size), &Figure::small(&Body::new(model)), &[], None, colour(glow)))
+        let id = MODELS.get(model).map_or("string", |(id, _)| *id);
+        self.write(&Picture::of(rect(size), &Figure::tile(id), &Pose::default(), colour(glow)))
     }
 
     fn write(&mut self, picture: &Picture) -> usize {
@@ -69,7 +70,7 @@ impl Drawn {
     /// Writes the coordinates of the point of the body that is nearest to a place in the picture. Returns whether the body is touched
     /// there, and can be struck elsewhere.
     pub(crate) fn touch(&mut self, size: [f32; 2], at: [f32; 2]) -> bool {
-        let (point, distance) = self.shape.figure.form.nearest(rect(size), pos2(at[0], at[1]));
+        let (point, distance) = self.shape.nearest(rect(size), pos2(at[0], at[1]));
         let Point { x, y } = self.shape.confined(point);
         self.numbers.clear();
         self.numbers.extend([x as f32, y as f32]);

@@ -4,8 +4,7 @@ use crate::editor::theme::{Palette, SMALL};
 use crate::editor::widgets::text::{line, width};
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
-use sprung::sound::bodies::Point;
-use sprung_picture::{Figure, Ink, Picture};
+use sprung_picture::{Figure, Ink, Picture, Pose};
 
 /// Space around a body, for its handles and for the frame that says that it is only a guess.
 const AROUND: f32 = 14.0;
@@ -23,16 +22,9 @@ pub(crate) fn paint_guess(painter: &Painter, rect: Rect, figure: &Figure, palett
     painter.extend(Shape::dashed_line(&corners, Stroke::new(1.0, palette.muted), 6.0, 5.0));
 }
 
-/// Paints the body. Displacements are in the picture's unit, none for a body at rest. Returns where the place `strike` is then.
-pub(crate) fn paint(
-    painter: &Painter,
-    rect: Rect,
-    figure: &Figure,
-    displacements: &[f32],
-    strike: Option<Point>,
-    palette: &Palette,
-) -> Option<Pos2> {
-    let picture = Picture::of(rect, figure, displacements, strike, palette.accent);
+/// Paints the body. Returns where it is struck, if that is known.
+pub(crate) fn paint(painter: &Painter, rect: Rect, figure: &Figure, pose: &Pose, palette: &Palette) -> Option<Pos2> {
+    let picture = Picture::of(rect, figure, pose, palette.accent);
     let struck = picture.strike;
     paint_picture(painter, picture, palette);
     struck
@@ -84,12 +76,12 @@ fn name(painter: &Painter, at: Pos2, name: &str, palette: &Palette) {
 
 /// Paints a body at rest.
 pub(crate) fn paint_still(painter: &Painter, rect: Rect, figure: &Figure, palette: &Palette) {
-    let _ = paint(painter, rect, figure, &[], None, palette);
+    let _ = paint(painter, rect, figure, &Pose::default(), palette);
 }
 
 /// Paints a body that stands on the lower edge of the rectangle.
 pub(crate) fn paint_standing(painter: &Painter, rect: Rect, figure: &Figure, palette: &Palette) {
-    let picture = Picture::of(rect, figure, &[], None, palette.accent);
+    let picture = Picture::of(rect, figure, &Pose::default(), palette.accent);
     paint_picture(painter, picture.standing(rect.bottom()), palette);
 }
 
@@ -110,6 +102,8 @@ fn paint_picture(painter: &Painter, picture: Picture, palette: &Palette) {
         let stroke = match ink {
             Ink::Edge => Stroke::new(1.2, palette.text.gamma_multiply(0.5)),
             Ink::Fine => Stroke::new(1.0, palette.text.gamma_multiply(0.25)),
+            Ink::Node => Stroke::new(1.0, palette.text.gamma_multiply(0.6)),
+            Ink::Joint => Stroke::new(1.3, palette.muted),
         };
         painter.add(Shape::line(points, stroke));
     }

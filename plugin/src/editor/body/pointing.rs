@@ -39,8 +39,7 @@ impl Pointing {
         held: Option<(Handle, Vec2)>,
         palette: &Palette,
     ) -> Self {
-        let form = shape.figure.form;
-        let shown = places.map(|place| place.map(|place| form.on(rect, place, 0.0)));
+        let shown = places.map(|place| place.map(|place| shape.figure.form.on(shape.place(rect), place, 0.0)));
         let around = |at: Pos2| Rect::from_center_size(at, Vec2::splat(2.0 * EAR));
         let areas = [Some((rect, "body")), shown[1].map(|at| (around(at), "ear"))];
         let responses: Vec<(Handle, Response)> = Handle::ALL
@@ -68,7 +67,7 @@ impl Pointing {
             let is_ear = far(1, pos) <= EAR && far(1, pos) < far(0, pos);
             let under = if is_ear { Handle::Ear } else { Handle::Strike };
             let (handle, off) = held.unwrap_or((under, Vec2::ZERO));
-            let (point, distance) = form.nearest(rect, pos - off);
+            let (point, distance) = shape.nearest(rect, pos - off);
             let is_at = distance <= REACH || is_ear || held.is_some();
             is_at.then(|| (handle, handle.confined(point, shape), pos))
         });

@@ -12,7 +12,7 @@ use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::loaded::Loaded;
 use egui::{CursorIcon, Pos2, Rect, Ui, Vec2};
 use sprung::sound::bodies::Point;
-use sprung_picture::{BodyShape, Origin, Swing};
+use sprung_picture::{BodyShape, Origin, Pose, Swing};
 use std::sync::Arc;
 
 /// Height from which on the stage has room for larger handles with their names, and how much larger these are.
@@ -110,15 +110,17 @@ impl BodyView {
         let moved = self.swing.advance(seconds, &shape, energies, rect);
         let [strike, ear] = self.places(&shape, shown, controls);
         let (painter, palette, figure) = (ui.painter(), controls.palette, &shape.figure);
-        let struck = face::paint(painter, rect, figure, &moved, strike, palette);
+        let pose = Pose { displacements: &moved, nodal: shape.lines_of(energies), strike };
+        let struck = face::paint(painter, rect, figure, &pose, palette);
+        let place = shape.place(rect);
         if shape.origin == Origin::Table && shown.preset().is_some() {
-            face::paint_guess(painter, rect, figure, palette);
+            face::paint_guess(painter, place, figure, palette);
         }
         if is_stage {
-            tool::paint(painter, rect, figure.form, strike, controls);
+            tool::paint(painter, place, figure.form, strike, controls);
         }
         // What listens stands still beside what moves.
-        let heard = ear.map(|ear| figure.form.on(rect, ear, 0.0));
+        let heard = ear.map(|ear| figure.form.on(place, ear, 0.0));
         let has_room = is_stage && rect.height() >= NAMED;
         let look = |handle| face::Look {
             size: if has_room { LARGE } else { 1.0 },
@@ -127,7 +129,7 @@ impl BodyView {
         };
         struck.into_iter().for_each(|at| face::paint_ring(painter, at, look(Handle::Strike), palette));
         heard.into_iter().for_each(|at| face::paint_ear(painter, at, look(Handle::Ear), palette));
-        self.bounds = face::bounds(rect, figure);
+        self.bounds = face::bounds(place, figure);
         let caption = shape.caption.clone();
         self.shape = Some((subject, shape));
         caption

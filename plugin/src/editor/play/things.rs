@@ -11,7 +11,7 @@ use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::line;
 use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
-use sprung::sound::bodies::{Body, MATERIALS, Model};
+use sprung::sound::bodies::{MATERIALS, Model};
 use sprung_picture::play::{DISCS, MODELS};
 use sprung_picture::{Figure, Origin, model_name, tint};
 
@@ -40,8 +40,7 @@ impl Things {
     ) -> Option<Result<(), String>> {
         let origin = self.read.get(shown);
         if self.figures.is_empty() {
-            let model = |id| Model::find(id).cloned().unwrap_or(Model::String);
-            self.figures = MODELS.iter().map(|(id, _)| Figure::small(&Body::new(model(id)))).collect();
+            self.figures = MODELS.iter().map(|(id, _)| Figure::tile(id)).collect();
         }
         let (changed, what) = if is_tall {
             self.tiles(ui, rect, &origin, shown, controls)?

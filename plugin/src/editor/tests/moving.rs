@@ -11,7 +11,7 @@ use egui_kittest::kittest::Queryable as _;
 use sprung::engine::EventKind;
 use sprung::params::Param;
 use sprung::sound::bodies::{Body, Model, Point};
-use sprung_picture::{Form, Origin};
+use sprung_picture::{BodyShape, Form, Origin};
 
 impl Band {
     fn show_body(&mut self) {
@@ -64,13 +64,13 @@ fn a_body_is_struck_where_it_is_clicked_and_that_is_undone_by_name() {
         let mut band = Band::new(sound, SIZE, Theme::Dark);
         band.show_body();
         let before = band.stage.params.state();
-        let rect = band.rect("Struck body");
+        let modes = |band: &Band| band.stage.params.loaded().kit.sounds()[0].patch().modes.clone();
+        let rect = BodyShape::of(&modes(&band), None, &[]).place(band.rect("Struck body"));
         let place = |x, y| form.on(rect, Point { x, y }, 0.0);
         let from = band.struck();
         band.pull_to(place(from.x, from.y), place(0.3, 0.05));
         let now = band.struck();
         assert!((now.x - 0.3).abs() < 0.03 && (form == Form::Line || (now.y - 0.05).abs() < 0.03), "{sound}: {now:?}");
-        let modes = |band: &Band| band.stage.params.loaded().kit.sounds()[0].patch().modes.clone();
         assert!(modes(&band).origin().is_some_and(|origin| origin.contains("strike = 0.")), "{sound}: saved as a body");
         let strikes = band.heard.iter().filter(|touch| matches!(touch, Touch::Down { .. })).count();
         assert!(strikes >= 2, "{sound}: it is heard: {:?}", band.heard);
