@@ -16,6 +16,9 @@ const BACK: f32 = 0.35;
 /// Strokes of a bow in a second, and how far it goes, as a share of its length.
 const STROKES: f32 = 0.4;
 const STROKE: f32 = 0.14;
+/// The smallest and the largest head of a mallet, as a multiple of that of a usual mass.
+const LIGHTEST: f32 = 0.7;
+const HEAVIEST: f32 = 1.5;
 /// Corners of a mallet's head.
 const CORNERS: u32 = 24;
 /// Space between a place and what touches it: the ring around the place is in between.
@@ -34,7 +37,12 @@ pub(super) fn paint(painter: &Painter, rect: Rect, form: Form, strike: Option<Po
     let from = if is_upright { vec2(-0.85, 0.53) } else { vec2(-0.42, -0.91) };
     let palette = controls.palette;
     match most {
-        Param::MalletLevel => mallet(painter, at + (size + RING + 1.6 * size * away) * from, from, size, palette),
+        Param::MalletLevel => {
+            let [hardness, mass] = [Param::MalletHardness, Param::MalletMass].map(|param| controls.heard(param.info()));
+            let size = size * mass.sqrt().clamp(LIGHTEST, HEAVIEST);
+            let head = at + (size + RING + 1.6 * size * away) * from;
+            mallet(painter, head, from, (size, (hardness / 100.0).clamp(0.0, 1.0)), palette);
+        }
         Param::PluckLevel => plectrum(painter, at + (RING + 1.2 * size * away) * from, from, 2.4 * size, palette),
         Param::BowLevel => {
             let (along, length) = match form {
@@ -46,7 +54,7 @@ pub(super) fn paint(painter: &Painter, rect: Rect, form: Form, strike: Option<Po
         }
         _ if form.is_line() => {
             let end = form.on(rect, Point { x: 0.0, y: 0.0 }, 0.0);
-            let length = (end.x - rect.left() + size).min(3.5 * size);
+            let length = (end.x - rect.left()).min(3.5 * size);
             mouthpiece(painter, end, vec2(length, size), palette);
         }
         _ => {}
@@ -82,18 +90,19 @@ fn shade(material: &str, light: f32) -> Color32 {
     tint(material).lerp_to_gamma(towards, (light - 1.0).abs())
 }
 
-/// A head of felt at the end of a stick of wood.
-fn mallet(painter: &Painter, head: Pos2, from: Vec2, size: f32, palette: &Palette) {
+/// A head at the end of a stick of wood: of felt if its hardness is 0, of steel if that is 1.
+fn mallet(painter: &Painter, head: Pos2, from: Vec2, (size, hardness): (f32, f32), palette: &Palette) {
+    let colour = |light: f32| shade("skin", light).lerp_to_gamma(shade("steel", light), hardness);
     let stick = [head, head + 9.0 * size * from];
     painter.line_segment(stick, Stroke::new(0.34 * size + 1.5, shade("maple", 0.45)));
     painter.line_segment(stick, Stroke::new(0.34 * size, shade("maple", 1.0)));
     let mut ball = Mesh::default();
-    ball.colored_vertex(head - vec2(0.3, 0.35) * size, shade("porcelain", 1.3));
+    ball.colored_vertex(head - vec2(0.3, 0.35) * size, colour(1.15 + 0.4 * hardness));
     for corner in 0..CORNERS {
         let out = Vec2::angled(TAU * corner as f32 / CORNERS as f32);
         // Lit from the left above.
         let light = 0.62 - 0.2 * (out.x + out.y);
-        ball.colored_vertex(head + size * out, shade("porcelain", light));
+        ball.colored_vertex(head + size * out, colour(light));
         ball.add_triangle(0, 1 + corner, 1 + (corner + 1) % CORNERS);
     }
     painter.add(ball);

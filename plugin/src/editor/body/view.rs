@@ -10,7 +10,7 @@ use crate::editor::controls::shown::{Shown, Subject};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::loaded::Loaded;
-use egui::{CursorIcon, Pos2, Rect, Ui, Vec2};
+use egui::{CursorIcon, Pos2, Rect, Ui, Vec2, vec2};
 use sprung::sound::bodies::Point;
 use sprung_picture::{BodyShape, Origin, Pose, Swing};
 use std::sync::Arc;
@@ -18,6 +18,8 @@ use std::sync::Arc;
 /// Height from which on the stage has room for larger handles with their names, and how much larger these are.
 const NAMED: f32 = 220.0;
 const LARGE: f32 = 1.4;
+/// How far apart they are then, to the side or up and down.
+const APART: Vec2 = vec2(90.0, 20.0);
 /// What is said of ring and ear.
 const STRIKES: &str = "Click, or drag the ring to another place.";
 const LISTENS: &str = "Drag the ear to another place: it does not hear the modes that have a node there.";
@@ -122,9 +124,14 @@ impl BodyView {
         // What listens stands still beside what moves.
         let heard = ear.map(|ear| figure.form.on(place, ear, 0.0));
         let has_room = is_stage && rect.height() >= NAMED;
+        // A name must not cover the other handle.
+        let are_apart = struck.zip(heard).is_none_or(|(one, other)| {
+            let off = (one - other).abs();
+            off.x >= APART.x || off.y >= APART.y
+        });
         let look = |handle| face::Look {
             size: if has_room { LARGE } else { 1.0 },
-            is_named: has_room || lit == Some(handle),
+            is_named: has_room && are_apart || lit == Some(handle),
             is_focused: focused == Some(handle),
         };
         struck.into_iter().for_each(|at| face::paint_ring(painter, at, look(Handle::Strike), palette));

@@ -23,9 +23,9 @@ const NOTHING: &str = "Wheel and pressure move nothing yet: drag them to knobs, 
 const PEDAL: &str = "Pedal: holds notes";
 const BETWEEN: &str = "   ·   ";
 
-/// Shows what the controllers do, up to the right end of `rect`: how far they move things, if there is room for that, or else as many as
-/// fit, the first at the left.
-pub(super) fn show(ui: &Ui, rect: Rect, routes: &Routes, controls: &Controls) {
+/// Shows what the controllers do, at one end of `rect`: how far they move things, if there is room for that, or else as many as fit, the
+/// first at the left.
+pub(super) fn show(ui: &Ui, rect: Rect, align: Align2, routes: &Routes, controls: &Controls) {
     let amount = |place| controls.value(amount_param(place).info());
     let range = controls.value(Param::BendRange.info());
     let said = |is_long: bool| {
@@ -37,7 +37,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, routes: &Routes, controls: &Controls) {
     // Bend and pedal do what they do in every sound.
     let moved = short[..CONTROLLERS.len() - 1].iter().flatten().count();
     if moved == 0 {
-        line(ui.painter(), rect, Align2::RIGHT_CENTER, NOTHING, SMALL, controls.palette.muted);
+        line(ui.painter(), rect, align, NOTHING, SMALL, controls.palette.muted);
         return;
     }
     let ways = |sentences: [Option<String>; CONTROLLERS.len()], least: usize| {
@@ -47,7 +47,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, routes: &Routes, controls: &Controls) {
     };
     let mut ways = ways(long, moved).into_iter().chain(ways(short, 1));
     let said = ways.find(|way| width(ui.painter(), way, SMALL) <= rect.width()).unwrap_or_default();
-    line(ui.painter(), rect, Align2::RIGHT_CENTER, &said, SMALL, controls.palette.muted);
+    line(ui.painter(), rect, align, &said, SMALL, controls.palette.muted);
 }
 
 /// Such as `Pressure: bow force +25 %, vibrato +10 %`, or shorter without how far; none if there is nothing of its `own` that it does, and

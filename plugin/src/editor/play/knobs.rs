@@ -18,7 +18,7 @@ use sprung_picture::play::ESSENTIALS;
 use std::f32::consts::TAU;
 
 /// What players move most, to be dragged to these knobs or, by way of a tab, to any.
-const SOURCES: [Source; 6] =
+pub(super) const SOURCES: [Source; 6] =
     [Source::Velocity, Source::Pressure, Source::Wheel, Source::Lfo1, Source::Envelope1, Source::Random];
 
 /// The title of the macros, and of the essential knobs, beside which these sources stand.

@@ -11,6 +11,7 @@ use crate::editor::body::view::{BodyView, velocity};
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
+use crate::editor::motion::sources;
 use crate::editor::theme::{GAP, KNOB, PADDING, RADIUS, SMALL, TITLE_HEIGHT};
 use crate::editor::widgets::outline;
 use crate::editor::widgets::text::line;
@@ -77,7 +78,13 @@ impl PlayPage {
         ground.paint(ui.painter(), level, controls);
         let caption = self.stand(ui, middle.with_max_y(floor.bottom()), shown, energies, controls);
         let under = middle.with_min_y(floor.bottom()).with_max_y(foot.top());
-        line(ui.painter(), under, Align2::CENTER_CENTER, &caption, SMALL, controls.palette.muted);
+        let routes = &shown.patch().routes;
+        // In a small window sources stand in the place of what they do, which comes here once everybody knows how to play.
+        if is_tall || shown.preset().is_none() || !self.was_played {
+            line(ui.painter(), under, Align2::CENTER_CENTER, &caption, SMALL, controls.palette.muted);
+        } else {
+            hands::show(ui, under, Align2::CENTER_CENTER, routes, controls);
+        }
         let touched = ground.touch(ui, self.body.bounds(), controls);
         if touched.is_dragged {
             self.audition.repeat(shown.guide().home, now, link);
@@ -101,8 +108,11 @@ impl PlayPage {
         if is_other {
             self.audition.strike(shown.guide().home, VELOCITY, now, link);
         }
-        if shown.preset().is_some() {
-            hands::show(ui, foot.with_min_x(spaces + GAP), &shown.patch().routes, controls);
+        let beside = foot.with_min_x(spaces + GAP);
+        match (shown.preset().is_some(), is_tall) {
+            (false, _) => {}
+            (true, true) => hands::show(ui, beside, Align2::RIGHT_CENTER, routes, controls),
+            (true, false) => sources::show_line(ui, beside, &knobs::SOURCES, shown, controls),
         }
         self.audition.request_end(ui);
         knobs::show(ui, rect.with_min_y(stage.bottom() + GAP), [title, side], shown, controls);

@@ -18,8 +18,9 @@ const FARTHER: f32 = 0.24;
 /// Movement of the pointer for the whole travel of the knob, in pixels, and how far from the far edge that is taken hold of.
 const TRAVEL: f32 = 200.0;
 const GRIP: f32 = 7.0;
-/// The least side of a part of the floor that can be taken hold of.
+/// The least side of a part of the floor that can be taken hold of, and how many there are at most.
 const LEAST: f32 = 6.0;
+const MOST: usize = 3;
 
 /// What is done with the floor, and what a hint says of it.
 const SIZE: (&str, &str) =
@@ -63,17 +64,17 @@ impl Floor {
         let (painter, palette, [left, right]) = (ui.painter(), controls.palette, self.ends);
         let edge = Rect::from_x_y_ranges(left..=right, self.far - GRIP..=self.far + GRIP);
         let front = self.middle.with_min_y(edge.bottom()).with_max_y(self.stage.bottom());
-        for (part, place) in beside(edge, body).into_iter().enumerate() {
+        for (part, place) in parts(ui, edge, body, SIZE) {
             let is_hot = Self::part(ui, (place, part), Param::SpaceSize.info(), SIZE, &mut touched, controls);
             if is_hot {
                 painter.hline(place.x_range(), place.center().y, Stroke::new(2.0, palette.text));
             }
-            if part == 0 {
-                let grip = Rect::from_center_size(place.center(), vec2(28.0, 3.0));
+            let grip = Rect::from_center_size(place.center(), vec2(28.0, 3.0));
+            if part == 0 && place.contains_rect(grip) {
                 painter.rect_filled(grip, 1.5, if is_hot { palette.text } else { palette.muted });
             }
         }
-        for (part, place) in beside(front, body).into_iter().enumerate() {
+        for (part, place) in parts(ui, front, body, MIX) {
             Self::part(ui, (place, part), Param::SpaceMix.info(), MIX, &mut touched, controls);
         }
         touched
@@ -89,7 +90,7 @@ impl Floor {
         controls: &mut Controls,
     ) -> bool {
         let sense = if part == 0 { Sense::click_and_drag() } else { Sense::CLICK | Sense::DRAG };
-        let mut response = ui.interact(place, Id::unique((name, part)), sense);
+        let mut response = ui.interact(place, id(name, part), sense);
         knob::drag(ui, &mut response, TRAVEL, info, controls);
         if part == 0 {
             knob::keys(ui, &response, info, controls);
@@ -159,8 +160,21 @@ fn has_space(controls: &Controls) -> bool {
     controls.value(Param::Space.info()) > 0.0
 }
 
-/// The parts of an area to the right and left of a body and below it that are large enough to be taken hold of; all of it, if the body
-/// is elsewhere.
+fn id(name: &'static str, part: usize) -> Id {
+    Id::unique((name, part))
+}
+
+/// The parts in which an area beside a body is taken hold of, with their numbers. One that is being dragged stays in hand, even if the
+/// floor moves so that there are fewer.
+fn parts(ui: &Ui, area: Rect, body: Rect, (name, _): (&'static str, &str)) -> Vec<(usize, Rect)> {
+    let mut parts: Vec<(usize, Rect)> = beside(area, body).into_iter().enumerate().collect();
+    let is_held = |part: &usize| ui.ctx().is_being_dragged(id(name, *part));
+    parts.extend((parts.len()..MOST).find(is_held).map(|part| (part, area)));
+    parts
+}
+
+/// The parts of an area beside a body and below it that are large enough to be taken hold of, the largest first; all of it, if the body is
+/// elsewhere.
 fn beside(area: Rect, body: Rect) -> Vec<Rect> {
     let body = body.intersect(area);
     if !body.is_positive() {
@@ -169,6 +183,7 @@ fn beside(area: Rect, body: Rect) -> Vec<Rect> {
     let below = Rect::from_min_max(body.left_bottom(), pos2(body.right(), area.bottom()));
     let mut parts = vec![area.with_min_x(body.right()), area.with_max_x(body.left()), below];
     parts.retain(|part| part.width().min(part.height()) >= LEAST);
+    parts.sort_by(|one, other| other.area().total_cmp(&one.area()));
     parts
 }
 

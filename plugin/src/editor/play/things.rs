@@ -2,37 +2,51 @@
 
 use crate::editor::body::edit::BodyEdit;
 use crate::editor::body::face;
-use crate::editor::body::offer::{TAKES, offer, suggestion};
+use crate::editor::body::offer::{TAKES, suggestion};
 use crate::editor::body::origin::OriginShown;
-use crate::editor::controls::shown::Shown;
+use crate::editor::controls::shown::{Shown, Subject};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{GAP, RADIUS, SMALL};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::line;
-use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
+use egui::scroll_area::ScrollBarVisibility;
+use egui::style::ScrollAnimation;
+use egui::{
+    Align2, Id, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2, WidgetInfo,
+    vec2,
+};
 use sprung::sound::bodies::{MATERIALS, Model};
 use sprung_picture::play::{DISCS, MODELS};
 use sprung_picture::{Figure, Origin, model_name, tint};
 
-/// What a table of modes lacks here.
-const LACKS: &str = "Modes alone, without a material or a place to strike.";
-
-/// Columns of tiles, and of discs.
+/// Columns of tiles, and of discs, where they stand in rows.
 const COLUMNS: [usize; 2] = [3, 5];
+/// Size of a tile, and of the place of a disc, where all are in one row that scrolls: not a whole number of them, so that one sees that
+/// there are more.
+const TILE: Vec2 = vec2(36.0, 42.0);
+const DISC: f32 = 24.0;
+/// Height of a list, and the space between parts.
+const LIST: f32 = 20.0;
+const SPACE: f32 = GAP / 2.0;
 
 /// The state of the column.
 #[derive(Default)]
 pub(super) struct Things {
     read: OriginShown,
     figures: Vec<Figure>,
+    /// The sound whose body and material have been scrolled to.
+    scrolled: Option<Subject>,
 }
+
+/// What is chosen: another body, and what is done to make it that.
+type Picked = Option<(Origin, String)>;
 
 impl Things {
     /// Shows the column. Returns the result of a change of the body, if there was one.
     pub(super) fn show(
         &mut self,
-        ui: &Ui,
+        ui: &mut Ui,
         rect: Rect,
         is_tall: bool,
         shown: &Shown,
@@ -42,68 +56,53 @@ impl Things {
         if self.figures.is_empty() {
             self.figures = MODELS.iter().map(|(id, _)| Figure::tile(id)).collect();
         }
-        let (changed, what) = if is_tall {
-            self.tiles(ui, rect, &origin, shown, controls)?
-        } else {
-            let model = model_field(ui, rect.with_max_y(rect.top() + 22.0), &origin, controls);
-            let below = rect.with_min_y(rect.top() + 28.0).with_max_y(rect.top() + 50.0);
-            let now = origin.body().map(|body| body.material.id);
-            let other = material_field(ui, below, now, &suggestion(&origin, shown).1, controls);
-            let offers = matches!(origin, Origin::Table);
-            let below = below.translate(vec2(0.0, 28.0)).with_max_y(rect.bottom());
-            let made = offers.then(|| offer(ui, below, LACKS, (&origin, shown), controls)).flatten();
-            model.or(other).or(made)?
-        };
+        let (changed, what) = self.parts(ui, rect, is_tall, &origin, shown, controls)?;
         Some(BodyEdit::make(&origin, changed, what, shown.loaded(), controls))
     }
 
-    fn tiles(
-        &self,
-        ui: &Ui,
+    /// Shows bodies and materials: in rows with titles, or where there is less room, in one row each that scrolls.
+    fn parts(
+        &mut self,
+        ui: &mut Ui,
         rect: Rect,
+        is_tall: bool,
         origin: &Origin,
         shown: &Shown,
         controls: &mut Controls,
-    ) -> Option<(Origin, String)> {
+    ) -> Picked {
         let palette = controls.palette;
         let mut top = rect.top();
         let mut next = |height: f32| {
             let place = rect.with_min_y(top).with_max_y(top + height);
-            top += height + GAP / 2.0;
+            top += height + SPACE;
             place
         };
-        line(ui.painter(), next(14.0), Align2::LEFT_CENTER, "What it is", SMALL, palette.muted);
-        let mut picked = None;
         let [columns, discs] = COLUMNS;
-        let size = vec2((rect.width() - 8.0) / columns as f32, 52.0);
-        let tiles = next(MODELS.len().div_ceil(columns) as f32 * (size.y + 4.0));
-        let now = origin.body().map(|body| body.model.id());
-        for (place, ((id, name), figure)) in MODELS.iter().zip(&self.figures).enumerate() {
-            let offset = vec2((place % columns) as f32, (place / columns) as f32) * (size + vec2(4.0, 4.0));
-            let tile = Rect::from_min_size(tiles.min + offset, size);
-            let is_now = now == Some(id);
-            let is_lit = is_now || origin.body().is_some_and(|body| is_kin(&body.model, id));
-            let response = choice(ui, tile, ("thing", name), is_lit);
-            let face = if is_lit || response.hovered() { palette.raised } else { palette.ground };
-            ui.painter().rect(tile, RADIUS, face, edge(&response, is_lit, controls), StrokeKind::Inside);
-            // A quarter of a pixel lower: edges on the centres of pixels are filled by some graphics drivers and not by others.
-            let picture = tile.with_max_y(tile.bottom() - 15.0).shrink2(vec2(7.0, 4.0)).translate(vec2(0.0, 0.25));
-            face::paint_still(ui.painter(), picture, figure, palette);
-            let colour = if is_lit { palette.text } else { palette.muted };
-            line(ui.painter(), tile.with_min_y(tile.bottom() - 16.0), Align2::CENTER_CENTER, name, SMALL, colour);
-            if response.clicked() && !is_now {
-                picked = Some((origin.with_model(false, Model::find(id)), format!("model {}", model_name(id))));
-            }
-        }
-        picked = model_field(ui, next(20.0), origin, controls).or(picked);
-        next(2.0);
         // A table of modes has no material: to choose one is to make it the body as which it is drawn.
         let (deed, suggested) = suggestion(origin, shown);
-        let has_body = origin.body().is_some();
-        let title = if has_body { "What it is made of" } else { "Modes alone, of no material yet" };
-        line(ui.painter(), next(14.0), Align2::LEFT_CENTER, title, SMALL, palette.muted);
-        if !has_body {
-            let response = button(ui, next(20.0), &deed, &deed, Look::Main, palette);
+        let now = origin.body().map(|body| body.material.id);
+        let figures = &self.figures;
+        let is_new = self.scrolled.as_ref() != Some(&shown.subject());
+        let tiles = |ui: &Ui, at: Pos2, size: Vec2, columns: usize, controls: &mut Controls| {
+            bodies(ui, (at, size, columns), (origin, figures), is_new, controls)
+        };
+        let mut picked = if is_tall {
+            line(ui.painter(), next(14.0), Align2::LEFT_CENTER, "What it is", SMALL, palette.muted);
+            let size = vec2((rect.width() - 8.0) / columns as f32, 52.0);
+            let place = next(MODELS.len().div_ceil(columns) as f32 * (size.y + SPACE));
+            tiles(ui, place.min, size, columns, controls)
+        } else {
+            let width = MODELS.len() as f32 * (TILE.x + SPACE) - SPACE;
+            scrolling(ui, next(TILE.y), "bodies", width, |ui, at| tiles(ui, at, TILE, MODELS.len(), controls))
+        };
+        picked = model_field(ui, next(LIST), origin, controls).or(picked);
+        if is_tall {
+            next(2.0);
+            let title = if now.is_some() { "What it is made of" } else { "Modes alone, of no material yet" };
+            line(ui.painter(), next(14.0), Align2::LEFT_CENTER, title, SMALL, palette.muted);
+        }
+        if now.is_none() {
+            let response = button(ui, next(LIST), &deed, &deed, Look::Main, palette);
             if response.hovered() {
                 *controls.hint = Hint::new(&deed, "Of the material below that is clicked, or of the usual one.");
             }
@@ -111,38 +110,102 @@ impl Things {
                 picked = Some((suggested.clone(), deed));
             }
         }
-        let now = origin.body().map(|body| body.material.id);
-        let pitch = rect.width() / discs as f32;
-        let rows = next(2.0 * pitch);
-        for (place, id) in DISCS.into_iter().enumerate() {
-            let offset = vec2((place % discs) as f32 + 0.5, (place / discs) as f32 + 0.5) * pitch;
-            let disc = Rect::from_center_size(rows.min + offset, vec2(pitch, pitch));
-            let is_now = now == Some(id);
-            let response = choice(ui, disc, ("material", id), is_now);
-            if response.hovered() {
-                *controls.hint = Hint::new(id, if now.is_some() { "Make it of this material." } else { TAKES });
-            }
-            let radius = 0.36 * pitch;
-            ui.painter().circle(disc.center(), radius, tint(id), Stroke::new(1.0, palette.line));
-            ui.painter().circle_filled(
-                disc.center() - vec2(0.3, 0.3) * radius,
-                0.22 * radius,
-                palette.text.gamma_multiply(0.35),
-            );
-            if is_now || response.has_focus() {
-                ui.painter().circle_stroke(disc.center(), radius + 2.5, edge(&response, is_now, controls));
-            }
-            if response.clicked() && !is_now {
-                picked = made_of(&suggested, id).or(picked);
-            }
-        }
-        material_field(ui, next(20.0), now, &suggested, controls).or(picked)
+        let chosen = if is_tall {
+            let pitch = rect.width() / discs as f32;
+            materials(ui, (next(2.0 * pitch).min, pitch, discs), (now, &suggested), is_new, controls)
+        } else {
+            let width = DISCS.len() as f32 * DISC;
+            scrolling(ui, next(DISC), "materials", width, |ui, at| {
+                materials(ui, (at, DISC, DISCS.len()), (now, &suggested), is_new, controls)
+            })
+        };
+        self.scrolled = Some(shown.subject());
+        material_field(ui, next(LIST), now, &suggested, controls).or(chosen).or(picked)
     }
 }
 
+/// Shows what is as wide as `width` in a place where it scrolls to the side.
+fn scrolling(ui: &mut Ui, rect: Rect, name: &str, width: f32, show: impl FnOnce(&Ui, Pos2) -> Picked) -> Picked {
+    let mut inner = ui.new_child(UiBuilder::new().id_salt(name).max_rect(rect));
+    let area = ScrollArea::horizontal().id_salt(name).auto_shrink(false);
+    let area = area.scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
+    area.show(&mut inner, |ui| {
+        let (area, _) = ui.allocate_exact_size(vec2(width, rect.height()), Sense::hover());
+        show(ui, area.min)
+    })
+    .inner
+}
+
+/// Shows the tiles of bodies from a corner on, in so many columns; what is new is scrolled to.
+fn bodies(
+    ui: &Ui,
+    (corner, size, columns): (Pos2, Vec2, usize),
+    (origin, figures): (&Origin, &[Figure]),
+    is_new: bool,
+    controls: &mut Controls,
+) -> Picked {
+    let (palette, now) = (controls.palette, origin.body().map(|body| body.model.id()));
+    let mut picked = None;
+    for (place, ((id, name), figure)) in MODELS.iter().zip(figures).enumerate() {
+        let offset = vec2((place % columns) as f32, (place / columns) as f32) * (size + Vec2::splat(SPACE));
+        let tile = Rect::from_min_size(corner + offset, size);
+        let is_now = now == Some(id);
+        let is_lit = is_now || origin.body().is_some_and(|body| is_kin(&body.model, id));
+        let response = choice(ui, tile, ("thing", name), is_lit, is_new);
+        let face = if is_lit || response.hovered() { palette.raised } else { palette.ground };
+        ui.painter().rect(tile, RADIUS, face, edge(&response, is_lit, controls), StrokeKind::Inside);
+        // A quarter of a pixel lower: edges on the centres of pixels are filled by some graphics drivers and not by others.
+        let picture =
+            tile.with_max_y(tile.bottom() - 15.0).shrink2(vec2(0.13 * size.x, 4.0)).translate(vec2(0.0, 0.25));
+        face::paint_still(ui.painter(), picture, figure, palette);
+        let colour = if is_lit { palette.text } else { palette.muted };
+        line(ui.painter(), tile.with_min_y(tile.bottom() - 16.0), Align2::CENTER_CENTER, name, SMALL, colour);
+        if response.clicked() && !is_now {
+            picked = Some((origin.with_model(false, Model::find(id)), format!("model {}", model_name(id))));
+        }
+    }
+    picked
+}
+
+/// Shows the discs of materials from a corner on, in so many columns, for a body that is `now` of one; what is new is scrolled to.
+fn materials(
+    ui: &Ui,
+    (corner, pitch, columns): (Pos2, f32, usize),
+    (now, origin): (Option<&str>, &Origin),
+    is_new: bool,
+    controls: &mut Controls,
+) -> Picked {
+    let palette = controls.palette;
+    let mut picked = None;
+    for (place, id) in DISCS.into_iter().enumerate() {
+        let offset = vec2((place % columns) as f32 + 0.5, (place / columns) as f32 + 0.5) * pitch;
+        let disc = Rect::from_center_size(corner + offset, vec2(pitch, pitch));
+        let is_now = now == Some(id);
+        let response = choice(ui, disc, ("material", id), is_now, is_new);
+        if response.hovered() {
+            *controls.hint = Hint::new(id, if now.is_some() { "Make it of this material." } else { TAKES });
+        }
+        let radius = 0.36 * pitch;
+        ui.painter().circle(disc.center(), radius, tint(id), Stroke::new(1.0, palette.line));
+        let glint = disc.center() - vec2(0.3, 0.3) * radius;
+        ui.painter().circle_filled(glint, 0.22 * radius, palette.text.gamma_multiply(0.35));
+        if is_now || response.has_focus() {
+            ui.painter().circle_stroke(disc.center(), radius + 2.5, edge(&response, is_now, controls));
+        }
+        if response.clicked() && !is_now {
+            picked = made_of(origin, id).or(picked);
+        }
+    }
+    picked
+}
+
 /// A picture to click, which is chosen or not.
-fn choice(ui: &Ui, rect: Rect, (kind, name): (&'static str, &str), is_now: bool) -> Response {
+fn choice(ui: &Ui, rect: Rect, (kind, name): (&'static str, &str), is_now: bool, is_new: bool) -> Response {
     let response = ui.interact(rect, Id::unique((kind, name)), Sense::click());
+    // In a row that scrolls, what is chosen or has the focus is to be seen.
+    if is_new && is_now || response.gained_focus() {
+        ui.scroll_to_rect_animation(rect, None, ScrollAnimation::none());
+    }
     response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_now, format!("{kind}: {name}")));
     response
 }
@@ -171,7 +234,7 @@ fn is_kin(model: &Model, id: &str) -> bool {
 }
 
 /// The list of all models.
-fn model_field(ui: &Ui, rect: Rect, origin: &Origin, controls: &Controls) -> Option<(Origin, String)> {
+fn model_field(ui: &Ui, rect: Rect, origin: &Origin, controls: &Controls) -> Picked {
     let names: Vec<String> = Model::ALL.iter().map(|(id, _)| model_name(id)).collect();
     let now = origin.body().map_or("a table of modes".to_owned(), |body| model_name(body.model.id()));
     let picked = field(ui, rect, "All bodies", &now, &names, controls)?;
@@ -180,13 +243,7 @@ fn model_field(ui: &Ui, rect: Rect, origin: &Origin, controls: &Controls) -> Opt
 }
 
 /// The list of all materials, of which the body gets one; a table of modes has none now.
-fn material_field(
-    ui: &Ui,
-    rect: Rect,
-    now: Option<&str>,
-    origin: &Origin,
-    controls: &Controls,
-) -> Option<(Origin, String)> {
+fn material_field(ui: &Ui, rect: Rect, now: Option<&str>, origin: &Origin, controls: &Controls) -> Picked {
     let now = now.map_or("choose a material".to_owned(), |id| id.replace('_', " "));
     let names: Vec<String> = MATERIALS.iter().map(|material| material.id.replace('_', " ")).collect();
     let picked = field(ui, rect, "All materials", &now, &names, controls)?;
@@ -199,6 +256,6 @@ fn field(ui: &Ui, rect: Rect, name: &str, value: &str, names: &[String], control
 }
 
 /// The body of another material.
-fn made_of(origin: &Origin, id: &str) -> Option<(Origin, String)> {
+fn made_of(origin: &Origin, id: &str) -> Picked {
     Some((origin.of_material(id)?, format!("material {}", id.replace('_', " "))))
 }

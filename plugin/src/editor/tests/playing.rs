@@ -195,12 +195,12 @@ fn a_mallet_may_strike_what_the_incoming_sound_drives() {
     assert!(band.value(Param::MalletLevel) > silent && band.value(Param::InputLevel) == Param::InputLevel.info().min);
 }
 
-/// What is painted of the stage while exciters have these levels and nothing sounds.
-fn acted_on(levels: &[(Param, f32)]) -> RgbaImage {
+/// What is painted of the stage while exciters have these levels, and no others, and nothing sounds.
+fn acted_on(values: &[(Param, f32)]) -> RgbaImage {
     let mut stage = facing(Face::Play, "Church Bell", SIZE, 1.0, Theme::Dark);
-    for level in [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel, Param::BowLevel] {
-        let value = levels.iter().find(|(param, _)| *param == level).map_or(level.info().min, |(_, value)| *value);
-        stage.params.knobs()[level as usize].turn(level.info().normalise(value) as f32);
+    let levels = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel, Param::BowLevel];
+    for (param, value) in levels.map(|level| (level, level.info().min)).iter().chain(values) {
+        stage.params.knobs()[*param as usize].turn(param.info().normalise(*value) as f32);
     }
     stage.harness.run_steps(3);
     let picture = stage.harness.render().unwrap();
@@ -220,6 +220,8 @@ fn what_acts_most_is_drawn_where_it_acts() {
     }
     let both = acted_on(&[(Param::MalletLevel, -6.0), (Param::BowLevel, -12.0)]);
     assert_eq!(differing(&both, &drawn[0], 1), 0, "the louder one alone");
+    let soft = acted_on(&[(Param::MalletLevel, -6.0), (Param::MalletHardness, 0.0)]);
+    assert!(differing(&soft, &drawn[0], 16) > 50, "a head of felt");
 }
 
 #[test]
@@ -261,6 +263,20 @@ fn the_floor_is_dragged_for_the_mix_and_its_far_edge_for_the_size() {
 }
 
 #[test]
+fn the_far_edge_stays_in_hand_when_it_goes_behind_the_body() {
+    let mut band = playing("Guitar");
+    band.click(Role::Tab, "Plate");
+    band.stage.host.calls();
+    let edge = band.rect("The floor’s far edge");
+    band.pull_to(edge.center(), edge.center() - vec2(0.0, 150.0));
+    band.passes(2);
+    assert_eq!(band.value(Param::SpaceSize), Param::SpaceSize.info().max);
+    let calls = band.stage.host.calls();
+    assert_eq!(calls.iter().filter(|call| matches!(call, Call::Begin(_))).count(), 1, "{calls:?}");
+    assert!(band.rect("The floor’s far edge").center().y < edge.center().y - 20.0, "and it is farther away");
+}
+
+#[test]
 fn the_floor_glows_by_the_level_and_is_as_it_was_when_nothing_sounds() {
     let mut band = playing("Church Bell");
     band.click(Role::Tab, "Room");
@@ -281,11 +297,41 @@ fn the_floor_glows_by_the_level_and_is_as_it_was_when_nothing_sounds() {
 
 #[test]
 fn hands_are_told_how_far_they_move_things_where_there_is_room() {
-    for (size, is_long) in [(SIZE, true), (LEAST_SIZE, false)] {
-        let stage = facing(Face::Play, "Church Bell", size, 1.0, Theme::Dark);
-        assert_eq!(stage.paints("Wheel: brightness +"), is_long);
-        assert!(stage.paints("Wheel: brightness"));
+    let mut band = playing("Church Bell");
+    assert!(band.stage.paints("Wheel: brightness +") && band.stage.paints("Bend: pitch ±2 st"));
+    // In a small window that stands below the body, once the sound was played.
+    band = Band::of(facing(Face::Play, "Church Bell", LEAST_SIZE, 1.0, Theme::Dark));
+    assert!(!band.stage.paints("Wheel: brightness"));
+    band.strike_at(60, 0.8);
+    band.passes(3);
+    assert!(band.stage.paints("Wheel: brightness"));
+}
+
+#[test]
+fn a_small_window_has_pictures_of_bodies_and_materials_and_sources_to_drag() {
+    let mut band = Band::of(facing(Face::Play, "Church Bell", LEAST_SIZE, 1.0, Theme::Dark));
+    for name in ["Source velocity", "Source pressure", "Source wheel"] {
+        band.rect(name);
     }
+    let [bodies, materials] = ["All bodies", "All materials"].map(|name| band.rect(name).x_range());
+    let is_seen = |band: &Band, name: &str, within: egui::Rangef| {
+        let place = band.rect(name).x_range();
+        within.contains(place.min) && within.contains(place.max)
+    };
+    assert!(is_seen(&band, "thing: Bell", bodies) && is_seen(&band, "material: bronze", materials));
+    for (name, key) in [("thing: Bowl", Key::Enter), ("material: nylon", Key::Space)] {
+        assert!(!is_seen(&band, name, bodies), "{name} is farther to the right");
+        band.stage.harness.get_by_role_and_label(Role::RadioButton, name).focus();
+        band.passes(3);
+        assert!(is_seen(&band, name, bodies), "{name} is scrolled to");
+        band.stage.harness.key_press(key);
+        band.passes(4);
+        assert_eq!(band.strikes(), 1, "{name}");
+    }
+    assert_eq!(band.thing(), ["bowl", "nylon"]);
+    band.undo();
+    band.undo();
+    assert!(is_seen(&band, "thing: Bell", bodies), "what comes back is seen");
 }
 
 #[test]
