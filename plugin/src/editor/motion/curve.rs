@@ -179,10 +179,15 @@ fn paint_label(ui: &Ui, rect: Rect, corner: &Corner, controls: &Controls) {
     let name = corner.info.name.strip_prefix(corner.info.section).unwrap_or(corner.info.name).trim();
     let text = format!("{name} {}", controls.text(corner.info));
     let size = vec2(110.0, 14.0);
-    let is_right = corner.place.x + GRIP + size.x > rect.right();
-    let down = if corner.place.y <= rect.top() { 7.0 } else { 14.0 };
-    let (left, align) = if is_right { (-size.x - 10.0, Align2::RIGHT_CENTER) } else { (10.0, Align2::LEFT_CENTER) };
-    let place = Rect::from_min_size(corner.place + vec2(left, down - 7.0), size);
+    // Beside the curve: that begins at the left end, and mostly comes to the right end from below.
+    let (by, align) = match corner.place {
+        Pos2 { y, .. } if y <= rect.top() => (vec2(20.0, -15.0), Align2::LEFT_CENTER),
+        Pos2 { x, .. } if x <= rect.left() => (vec2(10.0, 7.0), Align2::LEFT_CENTER),
+        _ => (vec2(-size.x - 10.0, -21.0), Align2::RIGHT_CENTER),
+    };
+    // The end of a long fade-in has no room at its right.
+    let by = if corner.place.x + by.x + size.x > rect.right() { vec2(-size.x - 10.0, by.y) } else { by };
+    let place = Rect::from_min_size(corner.place + by, size);
     line(ui.painter(), place, align, &text, SMALL, controls.palette.muted);
 }
 

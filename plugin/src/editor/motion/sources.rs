@@ -8,7 +8,7 @@ use crate::editor::pages::curves;
 use crate::editor::pages::sections::{Section, sections};
 use crate::editor::routes::{OF_KITS, source_name};
 use crate::editor::theme::{RADIUS, SMALL, TEXT};
-use crate::editor::widgets::text::{fitting, line, width};
+use crate::editor::widgets::text::{fitting, least_width, line, width};
 use egui::{
     Align2, Color32, CursorIcon, Id, Key, Mesh, Painter, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke,
     StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
@@ -30,9 +30,10 @@ const DRAWN: [(Source, &str); 5] = [
 const TILES: [f32; 2] = [46.0, 34.0];
 const TALL: f32 = 480.0;
 const CHIP: f32 = 20.0;
-/// How many macros stand side by side, in a list that is so wide and in one that is not.
-const MACROS: [f32; 2] = [4.0, 2.0];
-const WIDE: f32 = 180.0;
+/// How many macros stand side by side, where all of their names are whole.
+const MACROS: [f32; 3] = [4.0, 3.0, 2.0];
+/// The space around the name of one.
+const BESIDE: f32 = 8.0;
 /// How much is left of the curve of a source that moves nothing.
 const UNUSED: f32 = 0.5;
 const SPACE: f32 = 4.0;
@@ -142,9 +143,14 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, contr
             if shown.preset().is_some() { &["Macros: right click names one", "Macros"][..] } else { &["Macros"] };
         titles.push((fitting(ui.painter(), names, SMALL, whole), top));
         top += TITLE;
-        let columns = if whole >= WIDE { MACROS[0] } else { MACROS[1] };
-        let size = vec2(((whole + SPACE) / columns).floor() - SPACE, CHIP);
-        for (order, (source, name)) in macros.enumerate() {
+        let macros: Vec<&(Source, String)> = macros.collect();
+        let longest =
+            macros.iter().map(|(_, name)| least_width(ui.painter(), of_macro(name), TEXT)).fold(0.0, f32::max);
+        let wide = |columns: f32| ((whole + SPACE) / columns).floor() - SPACE;
+        let fits = |columns: &f32| wide(*columns) >= longest + BESIDE;
+        let columns = MACROS.into_iter().find(fits).unwrap_or(MACROS[MACROS.len() - 1]);
+        let size = vec2(wide(columns), CHIP);
+        for (order, (source, name)) in macros.into_iter().enumerate() {
             let [column, row] = [order as f32 % columns, (order as f32 / columns).floor()];
             let corner = pos2(column * (size.x + SPACE), top + row * (CHIP + SPACE));
             places.push((*source, name, Rect::from_min_size(corner, size)));
@@ -255,10 +261,15 @@ fn about(section: Section, used: usize, controls: &Controls) -> String {
     }
 }
 
-/// Paints a macro: its name, or else its number, over its value.
+/// What stands on a macro: its name, or else its number.
+fn of_macro(name: &str) -> &str {
+    name.strip_prefix("macro ").unwrap_or(name)
+}
+
+/// Paints a macro over its value.
 fn paint_macro(painter: &Painter, rect: Rect, (info, name): (&ParamInfo, &str), colour: Color32, controls: &Controls) {
-    let name = name.strip_prefix("macro ").unwrap_or(name);
-    line(painter, rect.shrink2(vec2(4.0, 1.0)), Align2::CENTER_CENTER, name, TEXT, colour);
+    let inside = rect.shrink2(vec2(BESIDE / 2.0, 1.0));
+    line(painter, inside, Align2::CENTER_CENTER, of_macro(name), TEXT, colour);
     let under = Rect::from_min_max(rect.left_bottom() + vec2(3.0, -4.0), rect.right_bottom() - vec2(3.0, 2.0));
     let end = under.left() + under.width() * controls.position(info);
     painter.rect_filled(under.with_max_x(end), 1.0, controls.palette.accent);
