@@ -10,13 +10,14 @@ pub(super) mod shown;
 use crate::editor::theme::Palette;
 use crate::marks::Mark;
 use crate::params::SprungParams;
-use egui::Rect;
+use egui::{Pos2, Rect};
 use gestures::Gestures;
 use history::History;
 use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
 use sprung::engine::SoundingNote;
 use sprung::params::{PARAMS, Param, ParamInfo};
+use sprung::patch::routes::Source;
 use sprung::preset::Playable;
 use sprung::sound::Sound;
 use std::collections::HashMap;
@@ -49,6 +50,24 @@ pub(super) struct Typing {
     pub(super) complaint: Option<String>,
 }
 
+/// A source that a knob has taken, and that is still dragged: its route is there, and its amount follows the pointer.
+pub(super) struct Held {
+    pub(super) source: Source,
+    pub(super) info: &'static ParamInfo,
+    /// The place of the route, and whether there was none before.
+    pub(super) place: usize,
+    pub(super) is_new: bool,
+    /// Value and position of the amount before.
+    pub(super) before: (f32, f32),
+    /// Where the pointer was when the knob took it, and in the last pass.
+    pub(super) from: Pos2,
+    pub(super) last: Pos2,
+    /// The amount in per cent, more precise than the knob's own.
+    pub(super) amount: f64,
+    /// Whether the pointer has left its place of rest.
+    pub(super) is_moved: bool,
+}
+
 /// The name of a macro that is being typed.
 pub(super) struct Naming {
     pub(super) info: &'static ParamInfo,
@@ -62,6 +81,9 @@ pub(super) struct Learning {
     pub(super) info: &'static ParamInfo,
     /// The number of controller movements at the last check.
     pub(super) seen: u64,
+    /// The keys that were down then, of all channels, and whether one went down since the beginning.
+    pub(super) down: u128,
+    pub(super) is_struck: bool,
     /// Whether the user has been asked to move a controller.
     pub(super) is_prompted: bool,
 }
@@ -91,6 +113,7 @@ pub(super) struct Interaction {
     pub(super) pick: Option<Pick>,
     /// The knob under a source that is being dragged, in this pass.
     pub(super) aim: Option<&'static ParamInfo>,
+    pub(super) held: Option<Held>,
     /// What the wheel has scrolled of a step over a knob that has whole ones, and that knob.
     pub(super) scrolled: Option<(usize, f64)>,
     /// Whether the wheel has scrolled a page since the pointer moved last.

@@ -15,33 +15,46 @@ use sprung::units::note_name;
 const ROUNDS: f64 = 2.0;
 /// Side of the place where a corner is taken.
 const GRIP: f32 = 18.0;
+/// The shortest period to which one is dragged at once, as a share of the picture.
+const LEAST_PERIOD: f64 = 0.02;
 /// The least distance of two corners at one height.
 const APART: f32 = 14.0;
 /// The least distance of two notes that are both named, and the height from which on a curve has room for names.
 const APART_NAMES: f32 = 24.0;
 const LEAST_WITH_NAMES: f32 = 60.0;
+/// The width from which on a curve has room for what its corners say.
+const LEAST_WITH_LABELS: f32 = 300.0;
 
-/// A corner: the parameter that it moves, where it is, and how far the parameter moves with each pixel.
+/// How a corner's parameter follows the pointer.
+#[derive(Clone, Copy)]
+enum Law {
+    /// A time, whose square root grows with each pixel to the right.
+    Root(f64),
+    /// A value that grows with each pixel to the right and down.
+    Linear([f64; 2]),
+    /// A rate: the square root of its period is as wide as the picture.
+    Period(f64),
+}
+
+/// A corner: the parameter that it moves, and where it is.
 #[derive(Clone, Copy)]
 struct Corner {
     info: &'static ParamInfo,
     place: Pos2,
     value: f64,
-    /// For times, how much their square root grows with each pixel to the right; 0 for other parameters.
-    root: f64,
-    /// For others, how much the value itself grows with each pixel to the right and down.
-    linear: [f64; 2],
+    law: Law,
 }
 
 impl Corner {
     /// The value when the corner is dragged so far from where it was.
     fn dragged(&self, by: Vec2) -> f64 {
         let [x, y] = [by.x, by.y].map(f64::from);
-        if self.root != 0.0 {
-            let root = (self.value.sqrt() + x * self.root).max(0.0);
-            return root * root;
+        let square = |root: f64| root * root;
+        match self.law {
+            Law::Root(pixel) => square((self.value.sqrt() + x * pixel).max(0.0)),
+            Law::Linear([right, down]) => self.value + x * right + y * down,
+            Law::Period(width) => self.value * square(width / (width + x).max(LEAST_PERIOD * width)),
         }
-        self.value + x * self.linear[0] + y * self.linear[1]
     }
 }
 
@@ -77,18 +90,27 @@ impl Curve {
         let values: Vec<f64> = section.iter().map(|info| f64::from(controls.heard(info))).collect();
         let roots = lengths(&|row| values[row]);
         let whole = self.grab.as_ref().map_or(whole(roots), |grab| grab.whole);
+        // While the rate is dragged, the picture keeps its scale: shorter rounds end further to the left.
+        let turned = self.grab.as_ref().filter(|grab| grab.corner.info.param == section[0].param);
+        let stretch = turned.map_or(1.0, |grab| (grab.corner.value / values[0]).sqrt().max(LEAST_PERIOD)) as f32;
+        let rounds = rect.with_max_x(rect.left() + stretch * rect.width());
         let corners = match section[0].param {
             Param::Envelope1Delay | Param::Envelope2Delay => {
                 curves::paint_envelope(ui.painter(), rect, &|row| values[row], whole, controls.palette);
                 let corners = of_envelope(rect, section, &values, whole);
                 // The handle of the hold is drawn beside the peak while the hold is 0: a line joins them.
                 let [_, peak, held, ..] = &corners[..] else { return };
-                ui.painter().line_segment([peak.place, held.place], Stroke::new(1.5, controls.palette.accent));
+                ui.painter().line_segment([peak.place, held.place], Stroke::new(1.5, controls.palette.modulation));
                 corners
             }
             Param::Lfo1Rate | Param::Lfo2Rate | Param::Lfo3Rate => {
-                curves::paint(ui.painter(), rect, section, controls);
-                of_oscillator(ui, rect, section, &values, controls)
+                let painter = ui.painter().with_clip_rect(rect.expand(2.0).intersect(ui.clip_rect()));
+                let mut next = rounds;
+                while next.left() < rect.right() {
+                    curves::paint(&painter, next, section, controls);
+                    next = next.translate(vec2(next.width(), 0.0));
+                }
+                of_oscillator(ui, [rect, rounds], section, &values, controls)
             }
             _ => return,
         };
@@ -99,10 +121,15 @@ impl Curve {
             .into_iter()
             .filter(|corner| is_held(corner) || rect.expand(GRIP / 2.0).contains(corner.place))
             .collect();
+        let with_labels =
+            is_oscillator(section) && rect.height() > LEAST_WITH_NAMES && rect.width() > LEAST_WITH_LABELS;
         for corner in shown {
+            if with_labels {
+                paint_label(ui, rect, &corner, controls);
+            }
             self.follow(ui, corner, whole, controls);
         }
-        paint_notes(ui, rect, section, notes, controls);
+        paint_notes(ui, rounds, section, notes, controls);
     }
 
     /// Shows a corner, and lets the user drag it.
@@ -137,9 +164,31 @@ impl Curve {
             controls.explain(format!("{} {}", info.name, controls.text(info)), info);
         }
         let palette = controls.palette;
-        let edge = Stroke::new(1.5, if is_hot { palette.text } else { palette.accent });
-        ui.painter().circle(place, if is_hot { 5.0 } else { 4.0 }, palette.panel, edge);
+        let (radius, fill) = if is_hot { (5.5, palette.modulation) } else { (4.5, palette.panel) };
+        ui.painter().circle(place, radius, fill, Stroke::new(1.5, palette.text));
     }
+}
+
+/// Whether a section is that of an oscillator, whose corners say what they are: those of an envelope are known by their places.
+fn is_oscillator(section: Section) -> bool {
+    matches!(section[0].param, Param::Lfo1Rate | Param::Lfo2Rate | Param::Lfo3Rate)
+}
+
+/// Writes what a corner of an oscillator is beside it: within the picture.
+fn paint_label(ui: &Ui, rect: Rect, corner: &Corner, controls: &Controls) {
+    let name = corner.info.name.strip_prefix(corner.info.section).unwrap_or(corner.info.name).trim();
+    let text = format!("{name} {}", controls.text(corner.info));
+    let size = vec2(110.0, 14.0);
+    // Beside the curve: that begins at the left end, and mostly comes to the right end from below.
+    let (by, align) = match corner.place {
+        Pos2 { y, .. } if y <= rect.top() => (vec2(20.0, -15.0), Align2::LEFT_CENTER),
+        Pos2 { x, .. } if x <= rect.left() => (vec2(10.0, 7.0), Align2::LEFT_CENTER),
+        _ => (vec2(-size.x - 10.0, -21.0), Align2::RIGHT_CENTER),
+    };
+    // The end of a long fade-in has no room at its right.
+    let by = if corner.place.x + by.x + size.x > rect.right() { vec2(-size.x - 10.0, by.y) } else { by };
+    let place = Rect::from_min_size(corner.place + by, size);
+    line(ui.painter(), place, align, &text, SMALL, controls.palette.muted);
 }
 
 /// Paints where notes are on the curve of a section, the newest last, with names where there is room.
@@ -152,7 +201,8 @@ pub(super) fn paint_notes(ui: &Ui, rect: Rect, section: Section, notes: &[Soundi
     let places: Vec<Option<Pos2>> = notes.iter().map(|note| place_of(rect, section[0].param, &values, note)).collect();
     for (order, note) in notes.iter().enumerate().rev() {
         let Some(at) = places[order] else { continue };
-        let radius = if order == 0 { 3.5 } else { 2.5 };
+        let large = if rect.height() > LEAST_WITH_NAMES { 1.0 } else { 0.0 };
+        let radius = large + if order == 0 { 3.5 } else { 2.5 };
         ui.painter().circle(at, radius, palette.modulation, Stroke::new(1.0, palette.panel));
         // Of notes side by side, the newer one is named.
         let is_free = places[..order].iter().flatten().all(|other: &Pos2| (other.x - at.x).abs() > APART_NAMES);
@@ -199,26 +249,28 @@ fn of_envelope(rect: Rect, section: Section, values: &[f64], whole: f64) -> Vec<
     let sustain = rect.bottom() - rect.height() * (values[4] / 100.0) as f32;
     let [peak, held, falls] = [delay + attack, delay + attack + hold, delay + attack + hold + decay].map(x);
     let rests = falls + (SUSTAIN * width) as f32;
-    let corner = |row: usize, place: Pos2, root: f64, down: f64| Corner {
-        info: &section[row],
-        place,
-        value: values[row],
-        root,
-        linear: [0.0, down],
-    };
-    let pixel = whole / width;
+    let corner = |row: usize, place: Pos2, law: Law| Corner { info: &section[row], place, value: values[row], law };
+    let pixel = Law::Root(whole / width);
+    let lifts = Law::Linear([0.0, -100.0 / f64::from(rect.height())]);
     vec![
-        corner(0, pos2(x(delay), rect.bottom()), pixel, 0.0),
-        corner(1, pos2(peak, rect.top()), pixel, 0.0),
-        corner(2, pos2(held.max(peak + APART), rect.top()), pixel, 0.0),
-        corner(3, pos2(falls, sustain), pixel, 0.0),
-        corner(4, pos2(0.5 * (falls + rests), sustain), 0.0, -100.0 / f64::from(rect.height())),
-        corner(5, pos2(rests + (width * release / whole) as f32, rect.bottom()), pixel, 0.0),
+        corner(0, pos2(x(delay), rect.bottom()), pixel),
+        corner(1, pos2(peak, rect.top()), pixel),
+        corner(2, pos2(held.max(peak + APART), rect.top()), pixel),
+        corner(3, pos2(falls, sustain), pixel),
+        corner(4, pos2(0.5 * (falls + rests), sustain), lifts),
+        corner(5, pos2(rests + (width * release / whole) as f32, rect.bottom()), pixel),
     ]
 }
 
-/// The corners of an oscillator: where it begins, and how long it fades in, over the whole range of that.
-fn of_oscillator(ui: &Ui, rect: Rect, section: Section, values: &[f64], controls: &Controls) -> Vec<Corner> {
+/// The corners of an oscillator in its picture, whose two rounds have a place of their own: where it begins, how long it fades in, over
+/// the whole range of that, and how fast it is, unless the song says so.
+fn of_oscillator(
+    ui: &Ui,
+    [rect, rounds]: [Rect; 2],
+    section: Section,
+    values: &[f64],
+    controls: &Controls,
+) -> Vec<Corner> {
     let (width, middle, [phase, fade]) = (f64::from(rect.width()), rect.center().y, [&section[3], &section[4]]);
     let whole = f64::from(fade.max).sqrt();
     let faded = rect.left() + (width * values[4].sqrt() / whole) as f32;
@@ -227,19 +279,34 @@ fn of_oscillator(ui: &Ui, rect: Rect, section: Section, values: &[f64], controls
         ui.painter().line_segment([pos2(rect.left(), middle), pos2(faded, edge)], stroke);
         ui.painter().line_segment([pos2(faded, edge), pos2(rect.right(), edge)], stroke);
     }
-    // The curve is dragged by the place where its first round ends.
-    let ends = rect.left() + (width * (1.0 - values[3] / 100.0) / ROUNDS) as f32;
-    let slides = [-100.0 * ROUNDS / width, 0.0];
-    vec![
-        Corner { info: phase, place: pos2(ends, middle), value: values[3], root: 0.0, linear: slides },
-        Corner { info: fade, place: pos2(faded, rect.top()), value: values[4], root: whole / width, linear: [0.0; 2] },
-    ]
+    // The curve itself is dragged: what is left of the picture is over when a note begins.
+    let slides = Law::Linear([-100.0 * ROUNDS / width, 0.0]);
+    let ends = rounds.right().min(rect.right());
+    let mut corners = vec![
+        Corner { info: phase, place: pos2(rect.left(), middle), value: values[3], law: slides },
+        Corner { info: fade, place: pos2(faded, rect.top()), value: values[4], law: Law::Root(whole / width) },
+    ];
+    if values[1] == 0.0 {
+        let law = Law::Period(width);
+        corners.push(Corner { info: &section[0], place: pos2(ends, middle), value: values[0], law });
+    }
+    corners
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::editor::pages::sections::sections;
+
+    #[test]
+    fn a_rate_follows_the_end_of_its_rounds() {
+        let info = Param::Lfo1Rate.info();
+        let corner = Corner { info, place: Pos2::ZERO, value: 2.0, law: Law::Period(400.0) };
+        for (by, rate) in [(0.0, 2.0), (-200.0, 8.0), (400.0, 0.5)] {
+            assert!((corner.dragged(vec2(by, 0.0)) - rate).abs() < 1e-9, "{by}");
+        }
+        assert!(corner.dragged(vec2(-4000.0, 0.0)).is_finite(), "beyond the left end");
+    }
 
     #[test]
     fn a_corner_is_where_the_pointer_has_dragged_it() {

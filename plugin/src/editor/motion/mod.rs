@@ -6,7 +6,7 @@ pub(super) mod sources;
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::pages::sections::{Section, knobs, sections, show_title};
-use crate::editor::routes::list::{self, View};
+use crate::editor::routes::list::List;
 use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, TITLE_HEIGHT};
 use crate::editor::widgets::buttons::help_tab;
 use curve::Curve;
@@ -23,13 +23,13 @@ const TALL: f32 = 420.0;
 pub(super) struct MotionPage {
     /// The source whose section is shown below the routes.
     chosen: Source,
-    view: View,
+    list: List,
     curve: Curve,
 }
 
 impl Default for MotionPage {
     fn default() -> Self {
-        Self { chosen: Source::Lfo1, view: View::default(), curve: Curve::default() }
+        Self { chosen: Source::Lfo1, list: List::default(), curve: Curve::default() }
     }
 }
 
@@ -55,7 +55,7 @@ impl MotionPage {
             self.leave();
         }
         let about = (shown.patch(), shown.guide(), shown.preset().is_some());
-        list::show(ui, list, &mut self.view, about, controls);
+        self.list.show(ui, list, about, controls);
         let help = Rect::from_min_size(list.right_top() - vec2(22.0, 0.0), vec2(22.0, TITLE_HEIGHT));
         let asks = help_tab(ui, help, "modulation", controls);
         for section in sections(section_of(self.chosen).as_slice()) {

@@ -5,10 +5,10 @@ use crate::editor::controls::naming::{self, macro_number};
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::pages::curves;
-use crate::editor::pages::sections::sections;
+use crate::editor::pages::sections::{Section, sections};
 use crate::editor::routes::{OF_KITS, source_name};
 use crate::editor::theme::{RADIUS, SMALL, TEXT};
-use crate::editor::widgets::text::{fitting, line, width};
+use crate::editor::widgets::text::{fitting, least_width, line, width};
 use egui::{
     Align2, Color32, CursorIcon, Id, Key, Mesh, Painter, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke,
     StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
@@ -26,9 +26,16 @@ const DRAWN: [(Source, &str); 5] = [
     (Source::Envelope1, "Envelope 1"),
     (Source::Envelope2, "Envelope 2"),
 ];
-/// Height of a source with a curve, and of one without.
-const TILE: f32 = 34.0;
+/// Height of a source with a curve, in a list that is so high and in one that is not, and of a source without.
+const TILES: [f32; 2] = [46.0, 34.0];
+const TALL: f32 = 480.0;
 const CHIP: f32 = 20.0;
+/// How many macros stand side by side, where all of their names are whole.
+const MACROS: [f32; 3] = [4.0, 3.0, 2.0];
+/// The space around the name of one.
+const BESIDE: f32 = 8.0;
+/// How much is left of the curve of a source that moves nothing.
+const UNUSED: f32 = 0.5;
 const SPACE: f32 = 4.0;
 /// Height of a title, and the space around the text of a source.
 const TITLE: f32 = 18.0;
@@ -116,30 +123,45 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, contr
         let macros = names.iter().filter(|(source, _)| is_macro(*source));
         let mut places = Vec::new();
         let mut top = TITLE;
+        let tile = if rect.height() >= TALL { TILES[0] } else { TILES[1] };
         for (source, name) in names.iter().filter(|(source, _)| drawn(*source).is_some()) {
-            places.push((*source, name, Rect::from_min_size(pos2(0.0, top), vec2(whole, TILE))));
-            top += TILE + SPACE;
+            places.push((*source, name, Rect::from_min_size(pos2(0.0, top), vec2(whole, tile))));
+            top += tile + SPACE;
         }
         let drags: &[&str] = match shown.preset() {
             Some(_) => &["Drag one to a knob, on any page", "Drag one to a knob"],
             None => &["A kit’s sounds have them"],
         };
         let drags = fitting(ui.painter(), drags, SMALL, whole);
-        let mut titles = vec![(drags, 0.0)];
-        for (title, group) in [("Played", played.collect::<Vec<_>>()), ("Macros", macros.collect())] {
-            titles.push((title, top));
-            top += TITLE;
-            let mut left = 0.0;
-            for (source, name) in group {
-                let size = vec2(chip_width(ui, (*source, name), shown).min(whole), CHIP);
-                if left > 0.0 && left + size.x > whole {
-                    (left, top) = (0.0, top + CHIP + SPACE);
-                }
-                places.push((*source, name, Rect::from_min_size(pos2(left, top), size)));
-                left += size.x + SPACE;
+        let mut titles = vec![(drags, 0.0), ("Played", top)];
+        top += TITLE;
+        let mut left = 0.0;
+        for (source, name) in played {
+            let size = vec2(chip_width(ui, (*source, name), shown).min(whole), CHIP);
+            if left > 0.0 && left + size.x > whole {
+                (left, top) = (0.0, top + CHIP + SPACE);
             }
-            top += CHIP + SPACE;
+            places.push((*source, name, Rect::from_min_size(pos2(left, top), size)));
+            left += size.x + SPACE;
         }
+        top += CHIP + SPACE;
+        let names =
+            if shown.preset().is_some() { &["Macros: right click names one", "Macros"][..] } else { &["Macros"] };
+        titles.push((fitting(ui.painter(), names, SMALL, whole), top));
+        top += TITLE;
+        let macros: Vec<&(Source, String)> = macros.collect();
+        let longest =
+            macros.iter().map(|(_, name)| least_width(ui.painter(), of_macro(name), TEXT)).fold(0.0, f32::max);
+        let wide = |columns: f32| ((whole + SPACE) / columns).floor() - SPACE;
+        let fits = |columns: &f32| wide(*columns) >= longest + BESIDE;
+        let columns = MACROS.into_iter().find(fits).unwrap_or(MACROS[MACROS.len() - 1]);
+        let size = vec2(wide(columns), CHIP);
+        for (order, (source, name)) in macros.into_iter().enumerate() {
+            let [column, row] = [order as f32 % columns, (order as f32 / columns).floor()];
+            let corner = pos2(column * (size.x + SPACE), top + row * (CHIP + SPACE));
+            places.push((*source, name, Rect::from_min_size(corner, size)));
+        }
+        top += (8.0 / columns).ceil() * (CHIP + SPACE);
         let (area, _) = ui.allocate_exact_size(vec2(whole, top), Sense::hover());
         let offset = area.min.to_vec2();
         for (title, top) in titles {
@@ -198,27 +220,65 @@ fn show_source(
     }
     let edge = match (response.has_focus(), is_chosen) {
         (true, _) => Stroke::new(1.5, palette.text),
-        (_, true) => Stroke::new(1.5, palette.accent),
+        (_, true) => Stroke::new(1.5, palette.modulation),
+        _ if used > 0 => Stroke::new(1.0, palette.modulation.gamma_multiply(0.55)),
         _ => Stroke::new(1.0, palette.line),
     };
     let fill = if response.hovered() { palette.raised } else { palette.panel };
     ui.painter().rect(rect, RADIUS, fill, edge, StrokeKind::Inside);
+    let colour = if used > 0 || is_chosen { palette.text } else { palette.muted };
+    if let (Some(info), Some(_)) = (macro_of(source), chosen) {
+        paint_macro(ui.painter(), rect, (info, name), colour, controls);
+        return response;
+    }
     let mut inside = rect.shrink2(vec2(6.0, 2.0));
+    let section = drawn(source).filter(|_| rect.height() > CHIP);
+    let is_tall = rect.height() >= TILES[0];
+    let words = if is_tall { inside.with_max_y(rect.center().y + 1.0) } else { inside };
     if used > 0 {
         let now = controls.notes.first().map(|note| note.sources[source as usize]);
-        paint_pie(ui.painter(), inside.left_center() + vec2(3.0, 0.0), now, palette.modulation);
+        paint_pie(ui.painter(), words.left_center() + vec2(3.0, 0.0), now, palette.modulation);
         inside.min.x += DOT;
     }
-    let colour = if used > 0 || is_chosen { palette.text } else { palette.muted };
-    let named = line(ui.painter(), inside, Align2::LEFT_CENTER, name, TEXT, colour);
-    if let Some(section) = drawn(source).filter(|_| rect.height() > CHIP) {
-        let picture = inside.with_min_x((named.right() + 10.0).max(inside.center().x)).shrink2(vec2(0.0, 5.0));
-        for section in sections(&[section]) {
-            curves::paint(ui.painter(), picture, section, controls);
-            paint_notes(ui, picture, section, notes_of(source, shown, controls), controls);
+    let named = line(ui.painter(), words.with_min_x(inside.left()), Align2::LEFT_CENTER, name, TEXT, colour);
+    for section in sections(section.as_slice()) {
+        if is_tall {
+            let below = inside.with_min_y(rect.center().y + 3.0).with_max_x(inside.center().x);
+            line(ui.painter(), below, Align2::LEFT_CENTER, &about(section, used, controls), SMALL, palette.muted);
         }
+        let picture = inside.with_min_x((named.right() + 10.0).max(inside.center().x)).shrink2(vec2(0.0, 5.0));
+        let mut painter = ui.painter().clone();
+        painter.multiply_opacity(if used > 0 || is_chosen { 1.0 } else { UNUSED });
+        curves::paint(&painter, picture, section, controls);
+        paint_notes(ui, picture, section, notes_of(source, shown, controls), controls);
     }
     response
+}
+
+/// What is said of a source with a curve: how an oscillator goes round, and how many routes an envelope has.
+fn about(section: Section, used: usize, controls: &Controls) -> String {
+    let [rate, sync, shape] = [0, 1, 2].map(|row| &section[row]);
+    match (section[0].section.starts_with("LFO"), used) {
+        (true, _) if controls.heard(sync) > 0.0 => format!("{}, {}", controls.text(shape), controls.text(sync)),
+        (true, _) => format!("{}, {}", controls.text(shape), controls.text(rate)),
+        (false, 0) => "not used".to_owned(),
+        (false, 1) => "1 route".to_owned(),
+        (false, count) => format!("{count} routes"),
+    }
+}
+
+/// What stands on a macro: its name, or else its number.
+fn of_macro(name: &str) -> &str {
+    name.strip_prefix("macro ").unwrap_or(name)
+}
+
+/// Paints a macro over its value.
+fn paint_macro(painter: &Painter, rect: Rect, (info, name): (&ParamInfo, &str), colour: Color32, controls: &Controls) {
+    let inside = rect.shrink2(vec2(BESIDE / 2.0, 1.0));
+    line(painter, inside, Align2::CENTER_CENTER, of_macro(name), TEXT, colour);
+    let under = Rect::from_min_max(rect.left_bottom() + vec2(3.0, -4.0), rect.right_bottom() - vec2(3.0, 2.0));
+    let end = under.left() + under.width() * controls.position(info);
+    painter.rect_filled(under.with_max_x(end), 1.0, controls.palette.accent);
 }
 
 /// Paints the mark of a source that has routes: a disc, or while a note sounds, a pie of its value there.

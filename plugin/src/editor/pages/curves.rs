@@ -40,7 +40,11 @@ pub(in crate::editor) fn paint(
     painter.hline(rect.x_range(), ground, Stroke::new(1.0, palette.line));
     // A section that is off is drawn in grey.
     let is_quiet = lamps::of(section[0].section).is_some_and(|lamp| !lamp.is_on(controls));
-    let colour = if is_quiet { palette.muted.gamma_multiply(0.6) } else { palette.accent };
+    let colour = match first {
+        Param::Lfo1Rate | Param::Lfo2Rate | Param::Lfo3Rate => palette.modulation,
+        _ if is_quiet => palette.muted.gamma_multiply(0.6),
+        _ => palette.accent,
+    };
     // The second line is what the first is compared with.
     for (points, stroke) in outline.lines.into_iter().zip([Stroke::new(1.5, colour), Stroke::new(1.0, palette.muted)]) {
         let mut points: Vec<Pos2> = points.into_iter().map(place).collect();
@@ -76,7 +80,7 @@ pub(in crate::editor) fn paint_envelope(
     palette: &Palette,
 ) {
     painter.hline(rect.x_range(), painter.round_to_pixel_center(rect.bottom()), Stroke::new(1.0, palette.line));
-    let line = egui::Shape::line(envelope(rect, value, whole), Stroke::new(1.5, palette.accent));
+    let line = egui::Shape::line(envelope(rect, value, whole), Stroke::new(1.5, palette.modulation));
     painter.with_clip_rect(rect.expand(2.0).intersect(painter.clip_rect())).add(line);
 }
 

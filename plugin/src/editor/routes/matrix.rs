@@ -1,6 +1,6 @@
 //! All routes of a sound as a matrix: sources that move something downwards, and what they move to the right.
 
-use super::{AMOUNT, Ring, add, button, name, now, source_name};
+use super::{AMOUNT, Ring, add, amount_text, button, can_move, goes_both_ways, now, source_name, words};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{GAP, RADIUS, SMALL, TEXT};
 use crate::editor::widgets::text::{line, paragraph};
@@ -63,7 +63,7 @@ pub(super) fn show(
                 let is_here = |route: &Route| route.source == *source && route.destination == *target;
                 let here: Vec<&(usize, Route)> = routes.iter().filter(|(_, route)| is_here(route)).collect();
                 ui.painter().rect_filled(place, RADIUS, if here.is_empty() { palette.panel } else { palette.raised });
-                if here.is_empty() && is_editable {
+                if here.is_empty() && is_editable && can_move(*source, target.info()) {
                     show_empty(ui, place, *source, *target, guide, controls);
                 }
                 // Two routes differ in their multiplier or response.
@@ -91,7 +91,7 @@ fn show_empty(ui: &Ui, rect: Rect, source: Source, target: Param, guide: &Guide,
     }
     outline(ui, &response, rect, RADIUS, palette);
     if response.clicked() {
-        controls.interaction.said = Some(add(source, target.info(), AMOUNT, controls));
+        controls.interaction.said = Some(add(Route::linear(source, target), AMOUNT, controls));
     }
 }
 
@@ -112,10 +112,9 @@ fn show_route(
         return;
     }
     let (value, mark) = above.split_left_right_at_x(above.right() - MARK);
-    let response = button(ui, mark, place, &patch.routes, guide, controls);
+    let response = button(ui, mark, (place, route), guide, controls);
     if response.hovered() {
-        let name = name(place, &patch.routes, guide);
-        *controls.hint = Hint::new(name, "Click: source, destination, multiplier and response.");
+        *controls.hint = Hint::new(words(route, guide), "Click: source, destination, multiplier and response.");
     }
     let colour = if response.hovered() { palette.text } else { palette.muted };
     let corner = |x: f32, y: f32| -> Pos2 { pos2(mark.right() - 4.0 + x, mark.center().y + y) };
@@ -123,5 +122,6 @@ fn show_route(
     ui.painter().add(Shape::convex_polygon(triangle, colour, Stroke::NONE));
     outline(ui, &response, mark, RADIUS, palette);
     let (ring, now) = (Ring::of(info, &patch.routes, controls), now(place, route, controls));
-    knob::show_bar(ui, [bar, value], info, (&ring, &now), controls);
+    let shown = (goes_both_ways(route), amount_text(route, controls.value(info), info));
+    knob::show_bar(ui, [bar, value], info, (&ring, &now), shown, controls);
 }

@@ -4,10 +4,11 @@ pub(super) mod carry;
 pub(super) mod learn;
 pub(super) mod list;
 mod matrix;
+mod row;
+mod typed;
 
 use crate::editor::controls::gestures;
 use crate::editor::controls::{Controls, Said, moved_in};
-use crate::loaded::positions_of;
 use egui::{Button, Id, Popup, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo};
 use sprung::engine::SoundingNote;
 use sprung::params::{PARAMS, Param, ParamInfo};
@@ -22,6 +23,16 @@ const AMOUNT: f32 = 25.0;
 pub(super) const OF_KITS: &str = "a kit’s sounds have routes of their own";
 const ALL_TAKEN: &str = "all sixteen routes are taken";
 
+/// Whether a source can move a parameter.
+fn can_move(source: Source, info: &ParamInfo) -> bool {
+    Route::linear(source, info.param).is_possible()
+}
+
+/// The first place without a route.
+fn free_place(routes: &Routes) -> Option<usize> {
+    (0..MAX_ROUTES).find(|place| routes.get(*place).is_none())
+}
+
 /// The name of a source as shown to the user, such as `LFO 1`; for a macro, the preset's name for it: a macro *Pressure* is not the
 /// pressure of the keys.
 pub(super) fn source_name(source: Source, guide: &Guide) -> String {
@@ -35,18 +46,26 @@ pub(super) fn source_name(source: Source, guide: &Guide) -> String {
     name
 }
 
-/// The name of a route, such as `wheel › Vibrato`; of an empty place, what a click on it does.
-pub(super) fn name(place: usize, routes: &Routes, guide: &Guide) -> String {
-    let Some(Route { source, destination, scale, .. }) = routes.get(place) else {
-        return "add a route".to_owned();
-    };
+/// A route in words, such as `wheel › Vibrato`.
+pub(super) fn words(route: &Route, guide: &Guide) -> String {
+    let Route { source, destination, scale, .. } = route;
     let scale = scale.map_or(String::new(), |scale| format!(" × {}", source_name(scale, guide)));
-    format!("{}{scale} › {}", source_name(source, guide), destination.info().name)
+    format!("{}{scale} › {}", source_name(*source, guide), destination.info().name)
 }
 
 /// Whether a route moves its parameter to both sides.
 fn goes_both_ways(route: &Route) -> bool {
     route.source.is_bipolar() || route.scale.is_some_and(Source::is_bipolar)
+}
+
+/// An amount as text, with its sign: what goes to both sides has both.
+fn amount_text(route: &Route, amount: f32, info: &ParamInfo) -> String {
+    match goes_both_ways(route) {
+        true if amount > 0.0 => format!("±{}", info.format(amount)),
+        true if amount < 0.0 => format!("∓{}", info.format(-amount)),
+        false if amount > 0.0 => format!("+{}", info.format(amount)),
+        _ => info.format(amount),
+    }
 }
 
 /// The modulation of a parameter, as a knob shows it.
@@ -85,55 +104,78 @@ fn now(place: usize, route: &Route, controls: &Controls) -> Vec<f32> {
     controls.notes.iter().map(on_bar).collect()
 }
 
-/// Makes the place of a route's sentence a button that opens its menu.
+/// The step that gives a place another route, in words.
+fn becomes(route: &Route, guide: &Guide) -> String {
+    let curve = match route.response {
+        Response::Linear => String::new(),
+        curve => format!(", {}", curve.id()),
+    };
+    format!("{}{curve}", words(route, guide))
+}
+
+/// Makes a place a button that opens the menu of a route.
 fn button(
     ui: &Ui,
     rect: Rect,
-    place: usize,
-    routes: &Routes,
+    (place, route): (usize, &Route),
     guide: &Guide,
     controls: &mut Controls,
 ) -> egui::Response {
     let response = ui.interact(rect, Id::unique(("route", place)), Sense::click());
-    let label = format!("Route {}: {}", place + 1, name(place, routes, guide));
+    let label = format!("Route {}: {}", place + 1, words(route, guide));
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
     Popup::menu(&response).show(|ui| {
         ui.set_min_width(140.0);
-        let route = routes.get(place);
-        let base = route.unwrap_or(Route::linear(Source::Velocity, Param::MalletHardness));
         let mut wanted = None;
-        ui.menu_button("Source", |ui| {
-            let is_here = |source| route.is_some_and(|route| route.source == source);
-            wanted = wanted.or(sources(ui, guide, is_here).map(|source| Some(Route { source, ..base })));
-        });
-        ui.menu_button("Destination", |ui| {
-            wanted = wanted.or(destinations(ui).map(|destination| Some(Route { destination, ..base })));
-        });
-        if route.is_some() {
-            ui.menu_button("Multiplied by", |ui| {
-                if ui.button("nothing").clicked() {
-                    wanted = Some(Some(Route { scale: None, ..base }));
-                }
-                let is_here = |source| base.scale == Some(source);
-                wanted = wanted.or(sources(ui, guide, is_here).map(|scale| Some(Route { scale: Some(scale), ..base })));
-            });
-            ui.menu_button("Response", |ui| {
-                for response in Response::ALL {
-                    if ui.selectable_label(base.response == *response, response.id()).clicked() {
-                        wanted = Some(Some(Route { response: *response, ..base }));
-                    }
-                }
-            });
-            if ui.button("Remove").clicked() {
-                wanted = Some(None);
-            }
-        }
+        ui.menu_button("Source", |ui| wanted = wanted.or(source_menu(ui, route, guide)));
+        ui.menu_button("Destination", |ui| wanted = wanted.or(target_menu(ui, route)));
+        ui.menu_button("Multiplied by", |ui| wanted = wanted.or(scale_menu(ui, route, guide)));
+        ui.menu_button("Response", |ui| wanted = wanted.or(curve_menu(ui, route)));
         if let Some(route) = wanted {
-            change(place, route, None, controls);
+            change(place, Some(route), None, becomes(&route, guide), controls);
+            ui.close();
+        }
+        if ui.button("Remove").clicked() {
+            remove(place, route, guide, controls);
             ui.close();
         }
     });
     response
+}
+
+/// Removes a route.
+fn remove(place: usize, route: &Route, guide: &Guide, controls: &mut Controls) {
+    change(place, None, None, format!("removed {}", words(route, guide)), controls);
+}
+
+/// The route with another source, if one is chosen.
+fn source_menu(ui: &mut Ui, route: &Route, guide: &Guide) -> Option<Route> {
+    let with = |source| Route { source, ..*route };
+    sources(ui, guide, |source| source == route.source, |source| with(source).is_possible()).map(with)
+}
+
+/// The route to another destination, if one is chosen.
+fn target_menu(ui: &mut Ui, route: &Route) -> Option<Route> {
+    let with = |destination| Route { destination, ..*route };
+    destinations(ui, |destination| with(destination).is_possible()).map(with)
+}
+
+/// The route with another multiplier or none, if that is chosen.
+fn scale_menu(ui: &mut Ui, route: &Route, guide: &Guide) -> Option<Route> {
+    if ui.add(Button::selectable(route.scale.is_none(), "nothing")).clicked() {
+        return Some(Route { scale: None, ..*route });
+    }
+    let with = |scale| Route { scale: Some(scale), ..*route };
+    sources(ui, guide, |scale| route.scale == Some(scale), |scale| with(scale).is_possible()).map(with)
+}
+
+/// The route with another curve, if one is chosen.
+fn curve_menu(ui: &mut Ui, route: &Route) -> Option<Route> {
+    let chosen = |response: &&Response| {
+        let is_here = route.response == **response;
+        ui.add(Button::selectable(is_here, response.id())).clicked()
+    };
+    Response::ALL.iter().find(chosen).map(|response| Route { response: *response, ..*route })
 }
 
 /// The part of a knob's menu that adds a route to its parameter from a chosen source.
@@ -153,50 +195,65 @@ pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
         let routes = &preset.patch.routes;
         let is_here =
             |source| routes.iter().any(|(_, route)| (route.source, route.destination) == (source, info.param));
-        if let Some(source) = sources(ui, &preset.guide, is_here) {
-            controls.interaction.said = Some(add(source, info, AMOUNT, controls));
+        let can = |source| can_move(source, info);
+        if let Some(source) = sources(ui, &preset.guide, is_here, can) {
+            controls.interaction.said = Some(add(Route::linear(source, info.param), AMOUNT, controls));
             ui.close();
         }
     });
 }
 
-/// Adds a route from a source to a parameter, unless there is one. Returns a message.
-fn add(source: Source, info: &'static ParamInfo, amount: f32, controls: &mut Controls) -> Said {
+/// Adds a route with an amount, unless there is one. Returns a message.
+fn add(route: Route, amount: f32, controls: &mut Controls) -> Said {
     let Playable::Preset(preset) = controls.params.state().playable else { return Err(OF_KITS.to_owned()) };
-    let routes = &preset.patch.routes;
-    let name = source_name(source, &preset.guide);
-    if let Some((place, _)) = routes.iter().find(|(_, route)| route.source == source && route.destination == info.param)
-    {
-        return Ok(format!("{name} modulates {} already: route {}", info.name, place + 1));
+    let (routes, info) = (&preset.patch.routes, route.destination.info());
+    let name = source_name(route.source, &preset.guide);
+    let is_this = |other: &Route| Route { response: route.response, ..*other } == route;
+    if let Some((place, _)) = routes.iter().find(|(_, other)| is_this(other)) {
+        return Ok(format!("{name} moves {} already: route {}", info.name, place + 1));
     }
-    let Some(place) = (0..MAX_ROUTES).find(|place| routes.get(*place).is_none()) else {
+    if !route.is_possible() {
+        return Err(format!("{name} is each note’s own, and {} is of all notes", info.name));
+    }
+    let Some(place) = free_place(routes) else {
         return Err(ALL_TAKEN.to_owned());
     };
-    change(place, Some(Route::linear(source, info.param)), Some(amount), controls);
-    Ok(format!("{name} modulates {}: route {}", info.name, place + 1))
+    let scale = route.scale.map_or(String::new(), |scale| format!(" times {}", source_name(scale, &preset.guide)));
+    let by = amount_param(place).info().format(amount);
+    let name = format!("{name}{scale} moves {} by {by}", info.name);
+    change(place, Some(route), Some(amount), name.clone(), controls);
+    Ok(name)
 }
 
-/// A list of all sources, in which some are marked. Returns the one that is clicked.
-fn sources(ui: &mut Ui, guide: &Guide, is_marked: impl Fn(Source) -> bool) -> Option<Source> {
+/// A list of all sources, in which some are marked, and some cannot be chosen. Returns the one that is clicked.
+fn sources(
+    ui: &mut Ui,
+    guide: &Guide,
+    is_marked: impl Fn(Source) -> bool,
+    is_possible: impl Fn(Source) -> bool,
+) -> Option<Source> {
     let mut chosen = None;
     ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
-        for source in Source::ALL {
-            if ui.add(Button::selectable(is_marked(*source), source_name(*source, guide))).clicked() {
-                chosen = Some(*source);
+        for source in Source::ALL.iter().copied() {
+            let choice = Button::selectable(is_marked(source), source_name(source, guide));
+            if ui.add_enabled(is_possible(source), choice).clicked() {
+                chosen = Some(source);
             }
         }
     });
     chosen
 }
 
-fn destinations(ui: &mut Ui) -> Option<Param> {
+/// The possible destinations by section. Returns the one that is clicked.
+fn destinations(ui: &mut Ui, is_possible: impl Fn(Param) -> bool) -> Option<Param> {
     let mut chosen = None;
     for section in PARAMS.chunk_by(|a, b| a.section == b.section) {
-        if !section.iter().any(ParamInfo::is_modulatable) {
+        let possible: Vec<&ParamInfo> = section.iter().filter(|info| is_possible(info.param)).collect();
+        if possible.is_empty() {
             continue;
         }
         ui.menu_button(section[0].section, |ui| {
-            for info in section.iter().filter(|info| info.is_modulatable()) {
+            for info in possible {
                 if ui.button(info.name).clicked() {
                     chosen = Some(info.param);
                 }
@@ -206,26 +263,32 @@ fn destinations(ui: &mut Ui) -> Option<Param> {
     chosen
 }
 
-/// Sets or removes a route, and optionally sets its amount. A new route never takes what a former one has left in its place.
-fn change(place: usize, route: Option<Route>, amount: Option<f32>, controls: &mut Controls) {
+/// Sets or removes a route, and optionally sets its amount, as one step of this name. A new route never takes what a former one has
+/// left in its place.
+fn change(place: usize, route: Option<Route>, amount: Option<f32>, name: String, controls: &mut Controls) {
+    let is_new = controls.params.loaded().kit.sounds()[0].patch().routes.get(place).is_none();
+    let info = amount_param(place).info();
+    let amount = match route {
+        None => Some(info.default),
+        Some(_) if is_new => amount.or(Some(AMOUNT)),
+        Some(_) => amount,
+    };
     controls.history.begin(controls.params);
+    put(place, route, amount.map(|amount| (amount, info.normalise(amount) as f32)), controls);
+    controls.history.end(name, controls.params);
+}
+
+/// Sets or removes a route, and gives its amount a value and a position. It becomes no step.
+fn put(place: usize, route: Option<Route>, amount: Option<(f32, f32)>, controls: &mut Controls) {
     gestures::change(controls.params, controls.host, |mut state| {
         let Playable::Preset(preset) = &mut state.playable else { return None };
         let patch: &mut Patch = &mut preset.patch;
-        let param = amount_param(place);
-        let amount = match (patch.routes.get(place), route) {
-            (_, None) => Some(param.info().default),
-            (None, Some(_)) => amount.or(Some(AMOUNT)),
-            (Some(_), Some(_)) => amount,
-        };
         patch.routes.set(place, route);
-        if let Some(amount) = amount {
-            patch.set(param, amount);
+        if let Some((value, position)) = amount {
+            patch.set(amount_param(place), value);
             state.values = patch.values;
-            state.positions[param as usize] = positions_of(&patch.values)[param as usize];
+            state.positions[amount_param(place) as usize] = position;
         }
         Some(state)
     });
-    let name = route.map_or("remove a route".to_owned(), |route| format!("route to {}", route.destination.info().name));
-    controls.history.end(name, controls.params);
 }

@@ -286,8 +286,8 @@ fn a_route_is_added_by_a_right_click_and_changed_on_its_page() {
     assert!(is_one_gesture(&stage.host.calls(), amount_param(place).info().name));
     stage.harness.get_by_role_and_label(Role::Tab, "Motion").click();
     stage.harness.run_steps(3);
-    stage.button(&format!("Route {}: LFO 1 › Mallet speed", place + 1));
-    stage.button("Remove");
+    stage.harness.get_by_label(&format!("Route {}: LFO 1 › Mallet speed", place + 1));
+    stage.button(&format!("Remove route {}", place + 1));
     assert_eq!(routes(&stage).get(place), None);
     for _ in 0..2 {
         stage.button("Undo");
@@ -317,16 +317,16 @@ fn a_free_place_shows_no_amount_and_leaves_none_to_its_next_route() {
     let param = amount_param(place);
     assert!(routes(&stage).get(place).is_none() && stage.value(param) != 0.0);
     let free: Vec<usize> = (0..=place).filter(|place| routes(&stage).get(*place).is_none()).collect();
-    for free in free {
-        stage.button(&format!("Route {}: add a route", free + 1));
-        stage.button("Source");
-        stage.button("LFO 2");
+    for (_, target) in free.iter().zip(["decay", "tilt", "vibrato", "mallet hardness", "noise level", "pan", "sweep"]) {
+        stage.harness.get_by_label("New route").focus();
+        stage.harness.run_steps(2);
+        stage.type_text(&format!("lfo 2 {target}"));
+        stage.harness.key_press(Key::Enter);
+        stage.harness.run_steps(3);
     }
     assert!(routes(&stage).get(place).is_some_and(|route| route.source == Source::Lfo2) && has_knob(&stage, place));
     assert_eq!(stage.value(param), 25.0, "as of every new route");
-    stage.harness.get_by_label_contains(&format!("Route {}: LFO 2", place + 1)).click();
-    stage.harness.run_steps(3);
-    stage.button("Remove");
+    stage.button(&format!("Remove route {}", place + 1));
     assert!(!has_knob(&stage, place) && stage.value(param) == param.info().default);
 }
 

@@ -235,7 +235,7 @@ fn the_routes_of_a_pad_are_shown_as_the_knobs_move_them() {
     stage.drag(hat, vec2(0.0, 0.0), Modifiers::NONE);
     stage.tab("Motion");
     let moved = heard.sounds[stage.pad(42).unwrap().1.sound].1.patch.get(amount);
-    assert!(moved < 0.0 && stage.paints(&amount.info().format(moved)), "{moved}");
+    assert!(moved < 0.0 && stage.paints(&amount.info().format(-moved)), "{moved}: its sign tells the sides");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::editor::theme::{SIZE, Theme};
 use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use sprung::engine::EventKind;
-use sprung::internals::learned::{Controllers, Movement, Takeover};
+use sprung::internals::learned::{Controllers, Movement, Takeover, check_controller};
 use sprung::internals::library::Library;
 use sprung::params::Param;
 use sprung::patch::routes::{Routes, Source, amount_param};
@@ -51,6 +51,53 @@ fn the_next_controller_that_moves_modulates_the_knob() {
     assert!(band.routes() == now, "not twice");
     band.stage.button("Undo");
     assert!(band.stage.params.state() == before.0, "one step");
+}
+
+#[test]
+fn whatever_moves_is_learnt() {
+    let note_off = |key| EventKind::NoteOff { key, velocity: 0.5, id: None };
+    let note_on = |key| EventKind::NoteOn { key, detune: 0.0, velocity: 0.7, id: None };
+    let control = |controller| EventKind::Control { controller, value: 0.8 };
+    for (source, events) in [
+        (Source::Wheel, vec![control(1)]),
+        (Source::Breath, vec![control(2)]),
+        (Source::Expression, vec![control(11)]),
+        (Source::Timbre, vec![control(74)]),
+        (Source::Bend, vec![EventKind::PitchBend(0.5)]),
+        (Source::Pressure, vec![EventKind::ChannelPressure(0.5)]),
+        // A key that is held has not decided yet.
+        (Source::Pressure, vec![note_on(60), EventKind::PolyPressure { key: 60, pressure: 0.5 }, note_off(60)]),
+        (Source::Bend, vec![note_on(60), EventKind::PitchBend(-0.5), note_off(60)]),
+        (Source::Velocity, vec![note_on(60), note_off(60)]),
+        (Source::Velocity, vec![note_on(60), note_on(64), note_off(60), note_off(64)]),
+    ] {
+        let mut band = Band::new("Marimba", SIZE, Theme::Dark);
+        let before = band.routes();
+        band.learn("Mallet speed");
+        for event in events {
+            band.play(event);
+            band.passes(3);
+        }
+        let new: Vec<_> = band.routes().iter().filter(|(place, _)| before.get(*place).is_none()).collect();
+        assert_eq!(new.len(), 1, "{source:?}");
+        assert_eq!((new[0].1.source, new[0].1.destination), (source, Param::MalletSpeed));
+        assert!(band.stage.paints(&format!("moves {} by", Param::MalletSpeed.info().name)), "{source:?}");
+    }
+}
+
+#[test]
+fn every_controller_but_those_that_are_parts_of_messages_is_learnt() {
+    let params = crate::params::SprungParams::default();
+    let learned = params.learned();
+    for controller in 0..128 {
+        let is_part = matches!(controller, 0 | 6 | 32 | 38 | 96..=101 | 120..);
+        learned.listen();
+        let movement = Takeover::default().follow(learned, controller, 0.5, |info| params.present(info));
+        assert_eq!(learned.heard(), Some(controller));
+        assert_eq!(matches!(movement, Movement::Free), is_part, "what does something else goes on doing so");
+        assert_eq!(check_controller(controller).is_err(), is_part, "{controller}");
+        learned.stop();
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod animation;
 mod body_numbers;
 mod browsing;
+mod carrying;
 mod comparing;
 mod devices;
 mod dropped;
@@ -26,3 +27,4 @@ mod reaching;
 mod renderer;
 mod rings;
 mod sounding;
+mod typing;

@@ -15,15 +15,15 @@ fn at(sound: &str, size: [u32; 2], theme: Theme) -> Stage {
 }
 
 impl Stage {
-    fn routes(&self) -> Routes {
+    pub(super) fn routes(&self) -> Routes {
         self.params.loaded().kit.sounds()[0].patch().routes
     }
 
-    fn middle(&self, role: Role, name: &str) -> Pos2 {
+    pub(super) fn middle(&self, role: Role, name: &str) -> Pos2 {
         self.harness.get_by_role_and_label(role, name).rect().center()
     }
 
-    fn button_at(&mut self, pos: Pos2, pressed: bool) {
+    pub(super) fn button_at(&mut self, pos: Pos2, pressed: bool) {
         let button = PointerButton::Primary;
         self.harness.event(Event::PointerMoved(pos));
         self.harness.run_steps(1);
@@ -74,11 +74,10 @@ fn a_quick_drag_takes_what_was_pressed() {
 fn no_route_is_cut_off_at_the_side() {
     let stage = at("Church Bell", LEAST_SIZE, Theme::Dark);
     let routes = stage.routes();
-    let free = (0..MAX_ROUTES).find(|place| routes.get(*place).is_none());
-    for place in routes.iter().map(|(place, _)| place).chain(free) {
-        let name = format!("Route {}: ", place + 1);
-        let route = stage.harness.get_by_label_contains(&name);
-        assert!(route.rect().right() < LEAST_SIZE[0] as f32, "{name}{:?}", route.rect());
+    let ends = routes.iter().map(|(place, _)| format!("Remove route {}", place + 1));
+    for name in ends.chain(["New route".to_owned()]) {
+        let end = stage.harness.get_by_label(&name).rect();
+        assert!(end.right() < LEAST_SIZE[0] as f32, "{name} {end:?}");
     }
 }
 
@@ -193,16 +192,24 @@ fn an_envelope_is_drawn_and_each_corner_is_one_step() {
 }
 
 #[test]
-fn an_oscillator_is_dragged_to_another_start_and_faded_in() {
+fn an_oscillator_is_dragged_to_another_start_faded_in_and_made_faster() {
     let mut stage = at("Church Bell", SIZE, Theme::Dark);
     stage.button("Source LFO 1");
-    for (param, by) in [(Param::Lfo1Phase, vec2(-40.0, 0.0)), (Param::Lfo1Fade, vec2(60.0, 0.0))] {
+    for (param, by) in
+        [(Param::Lfo1Phase, vec2(-40.0, 0.0)), (Param::Lfo1Fade, vec2(60.0, 0.0)), (Param::Lfo1Rate, vec2(-60.0, 0.0))]
+    {
         let position = |stage: &Stage| stage.params.knobs()[param as usize].position();
         let before = position(&stage);
         let corner = stage.middle(Role::Label, &format!("Corner {}", param.info().name));
         stage.drag(corner, by, Modifiers::NONE);
         assert!(position(&stage) > before, "{}", param.info().name);
     }
+    // The song gives the rate.
+    stage.harness.get_by_label("Corner LFO 1 rate");
+    let sync = Param::Lfo1Sync.info();
+    stage.params.knobs()[Param::Lfo1Sync as usize].turn(sync.normalise(3.0) as f32);
+    stage.harness.run_steps(2);
+    assert!(stage.harness.query_by_label("Corner LFO 1 rate").is_none());
 }
 
 #[test]
@@ -231,7 +238,7 @@ fn a_macro_is_named_in_its_place_and_the_name_is_one_step() {
         stage.harness.key_press(key);
         stage.harness.run_steps(3);
     };
-    stage.harness.get_by_role_and_label(Role::Button, "Source macro6").click_secondary();
+    stage.harness.get_by_role_and_label(Role::Button, "Source macro 6").click_secondary();
     name(&mut stage, " Air ", Key::Enter);
     assert_eq!(names(&stage), [&before.0[..], &[String::new(), "Air".to_owned()]].concat());
     stage.harness.get_by_label_contains("named macro 6 Air");

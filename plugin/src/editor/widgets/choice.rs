@@ -3,6 +3,7 @@
 use super::knob::{self, keys, wheel};
 use super::text::line;
 use crate::editor::controls::Controls;
+use crate::editor::routes::carry;
 use crate::editor::theme::{KNOB, Palette, SMALL};
 use crate::editor::widgets::knob::{face, menu};
 use egui::{
@@ -24,6 +25,10 @@ pub(crate) fn show(ui: &mut Ui, cell: Rect, info: &'static ParamInfo, name: &str
     // In a kit, how far each pad's own choice goes on.
     let ways: Vec<String> = (0..info.choices.len()).map(|place| controls.written(info, place as f32)).collect();
     let ways: Vec<&str> = ways.iter().map(String::as_str).collect();
+    let opacity = ui.opacity();
+    if carry::is_closed(ui, info) {
+        ui.multiply_opacity(knob::CLOSED);
+    }
     let (response, picked) = field.show(ui, rect, &ways, controls.palette);
     wheel(ui, &response, info, controls);
     keys(ui, &response, info, controls);
@@ -37,6 +42,7 @@ pub(crate) fn show(ui: &mut Ui, cell: Rect, info: &'static ParamInfo, name: &str
     }
     face::paint_mark(ui.painter(), rect.center_bottom(), mark.as_ref(), controls.palette);
     line(ui.painter(), knob::name_rect(cell, KNOB), Align2::CENTER_CENTER, name, SMALL, controls.palette.text);
+    ui.set_opacity(opacity);
 }
 
 /// A field that shows one of several names, and opens the list of them.

@@ -1,10 +1,11 @@
 //! Draws the face of a knob: an arc from the default to the position, a pointer, and rings for modulation.
 
 use crate::editor::routes::Ring;
-use crate::editor::theme::{KNOB, Palette};
+use crate::editor::routes::carry::Halo;
+use crate::editor::theme::{KNOB, Palette, RADIUS};
 use crate::editor::widgets::disc;
 use crate::marks::{Colour, Mark};
-use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, vec2};
 use std::f32::consts::PI;
 
 /// Where a position is drawn on a knob that only moves each pad's own value: the neutral position points upwards.
@@ -50,6 +51,45 @@ fn paint_marks(painter: &Painter, rect: Rect, marks: &[f32], palette: &Palette) 
         let centre = on_ring(rect, *mark);
         disc(painter, centre, radius, palette.modulation, Stroke::new(edge, palette.panel));
     }
+}
+
+/// Paints how a knob answers a source that is being dragged, around its face in `rect`.
+pub(super) fn paint_halo(painter: &Painter, rect: Rect, halo: Halo, palette: &Palette) {
+    let radius = rect.width() / 2.0 + 3.0;
+    if let Some(edge) = halo_edge(halo, palette) {
+        painter.circle(rect.center(), radius, palette.modulation.gamma_multiply(0.18), edge);
+    }
+}
+
+/// The same for one that is a bar.
+pub(super) fn paint_bar_halo(painter: &Painter, rect: Rect, halo: Halo, palette: &Palette) {
+    if let Some(edge) = halo_edge(halo, palette) {
+        painter.rect_stroke(rect.expand2(vec2(3.0, 0.0)), RADIUS, edge, StrokeKind::Inside);
+    }
+}
+
+fn halo_edge(halo: Halo, palette: &Palette) -> Option<Stroke> {
+    match halo {
+        Halo::None | Halo::Closed => None,
+        Halo::Open => Some(Stroke::new(1.0, palette.modulation.gamma_multiply(0.6))),
+        Halo::Aimed => Some(Stroke::new(2.5, palette.modulation)),
+    }
+}
+
+/// Paints a knob so small that it only shows where it stands.
+pub(crate) fn paint_small(
+    painter: &Painter,
+    centre: Pos2,
+    radius: f32,
+    [origin, position]: [f32; 2],
+    palette: &Palette,
+) {
+    arc(painter, centre, radius - 1.0, [0.0, 1.0], Stroke::new(2.0, palette.line));
+    if (position - origin).abs() > 1e-4 {
+        arc(painter, centre, radius - 1.0, [origin, position], Stroke::new(2.0, palette.accent));
+    }
+    let along = direction(position);
+    painter.line_segment([centre, centre + (radius - 3.0) * along], Stroke::new(1.5, palette.text));
 }
 
 /// Paints what the host says of a parameter: a disc for the controller that it is mapped to, and beside it a ring for

@@ -6,8 +6,10 @@ pub(super) mod menu;
 use super::text::line;
 use super::typing::{type_value, typed};
 use crate::editor::controls::{Controls, naming};
-use crate::editor::routes::{Ring, carry};
+use crate::editor::routes::Ring;
+use crate::editor::routes::carry::{self, Halo};
 use crate::editor::theme::SMALL;
+use crate::editor::widgets::disc;
 use crate::marks::Mark;
 use egui::accesskit::{Action, ActionData};
 use egui::{Align2, CursorIcon, Event, EventFilter, Id, Key, Rect, Response, Sense, Stroke, Ui};
@@ -21,6 +23,8 @@ const TRAVEL: f32 = 220.0;
 const STEP: f64 = 0.01;
 /// Seconds for which the pointer rests on a knob before the wheel turns it, where the wheel may be meant to scroll.
 const REST: f32 = 0.25;
+/// How much is left of a knob that cannot take the source that is being dragged.
+pub(super) const CLOSED: f32 = 0.35;
 /// Factor for all movements while Shift is held.
 const FINE: f64 = 0.1;
 
@@ -65,6 +69,7 @@ struct Turned {
     mark: Option<Mark>,
     is_hovered: bool,
     is_focused: bool,
+    halo: Halo,
 }
 
 /// Lets the user turn a parameter in one place and type its value in another; `travel` pixels turn it from end to end.
@@ -90,7 +95,7 @@ fn turn(ui: &Ui, turned: Rect, value: Rect, travel: f32, info: &'static ParamInf
         about.current_text_value = Some(text.clone());
         about
     });
-    carry::aim(ui, turned.union(value), info, controls);
+    let halo = carry::aim(ui, turned.union(value), info, controls);
     let is_hovered = response.hovered() || response.dragged() || value_response.hovered();
     let (mark, said) = controls.mark(info);
     if is_hovered {
@@ -98,7 +103,7 @@ fn turn(ui: &Ui, turned: Rect, value: Rect, travel: f32, info: &'static ParamInf
         let now = newest.map_or(String::new(), |value| format!(" › {}", info.format(value)));
         controls.explain(format!("{} {text}{now}{said}", info.name), info);
     }
-    Turned { text, mark, is_hovered, is_focused: response.has_focus() }
+    Turned { text, mark, is_hovered, is_focused: response.has_focus(), halo }
 }
 
 /// Shows a parameter's knob in a cell, its face as wide as `side`, under the title `name`; `ring` shows its modulation.
@@ -113,6 +118,10 @@ pub(crate) fn show(
     let parts = Parts::of(cell, side);
     let turned = turn(ui, cell.with_max_y(parts.value.top()), parts.value, TRAVEL, info, controls);
     let palette = controls.palette;
+    let opacity = ui.opacity();
+    if turned.halo == Halo::Closed {
+        ui.multiply_opacity(CLOSED);
+    }
     let neutral = info.normalise(info.default) as f32;
     let is_relative = controls.own(info).is_some();
     let shown = |position| if is_relative { face::around(neutral, position) } else { position };
@@ -125,6 +134,7 @@ pub(crate) fn show(
         is_hovered: turned.is_hovered,
         is_focused: turned.is_focused,
     };
+    face::paint_halo(ui.painter(), parts.face, turned.halo, palette);
     face::paint(ui.painter(), parts.face, palette, &face);
     // In the gap of the arc.
     face::paint_mark(ui.painter(), parts.face.center_bottom() - vec2(0.0, 3.0), turned.mark.as_ref(), palette);
@@ -132,49 +142,54 @@ pub(crate) fn show(
         line(ui.painter(), parts.name, Align2::CENTER_CENTER, name, SMALL, palette.text);
     }
     show_value(ui, parts.value, Align2::CENTER_CENTER, info, &turned, controls);
+    ui.set_opacity(opacity);
 }
 
-/// Shows a parameter as a bar from the position of zero, with its value beside it; `ring` shows its modulation, and `now` are places on
-/// the bar that the sounding notes have reached, the newest note's first.
+/// Shows a parameter as a bar from the position of zero, or as far to both sides, with its value beside it in these words; `ring` shows
+/// its modulation, and `now` are places on the bar that the sounding notes have reached, the newest note's first.
 pub(crate) fn show_bar(
     ui: &mut Ui,
     [bar, value]: [Rect; 2],
     info: &'static ParamInfo,
     (ring, now): (&Ring, &[f32]),
+    (is_both, text): (bool, String),
     controls: &mut Controls,
 ) {
-    let turned = turn(ui, bar, value, bar.width(), info, controls);
+    let mut turned = turn(ui, bar, value, bar.width(), info, controls);
+    turned.text = text;
     let palette = controls.palette;
+    let opacity = ui.opacity();
+    if turned.halo == Halo::Closed {
+        ui.multiply_opacity(CLOSED);
+    }
     let track = Rect::from_center_size(bar.center(), vec2(bar.width(), 4.0));
     let x = |position: f32| bar.left() + position * bar.width();
     let [zero, end] = [info.normalise(0.0) as f32, controls.position(info)].map(x);
+    let begin = if is_both { 2.0 * zero - end } else { zero };
     let colour = if turned.is_hovered { palette.muted.gamma_multiply(0.55) } else { palette.line };
     ui.painter().rect_filled(track, 2.0, colour);
-    ui.painter().rect_filled(track.with_min_x(zero.min(end)).with_max_x(zero.max(end)), 2.0, palette.modulation);
+    ui.painter().rect_filled(track.with_min_x(begin.min(end)).with_max_x(begin.max(end)), 2.0, palette.modulation);
     ui.painter().vline(zero, bar.y_range().shrink(4.0), Stroke::new(1.0, palette.muted));
     for range in &ring.ranges {
         let [from, to] = range.map(x);
         let above = bar.center().y - 5.0;
         ui.painter().hline(from.min(to)..=from.max(to), above, Stroke::new(1.5, palette.modulation));
     }
-    let edge = if turned.is_focused { Stroke::new(1.5, palette.accent) } else { Stroke::NONE };
-    ui.painter().circle(pos2(end, bar.center().y), 5.0, palette.text, edge);
+    face::paint_bar_halo(ui.painter(), bar, turned.halo, palette);
+    let edge = if turned.is_focused || turned.is_hovered { palette.text } else { palette.modulation };
+    ui.painter().circle(pos2(end, bar.center().y), 5.0, palette.panel, Stroke::new(1.8, edge));
     let offset = controls.params.knobs()[info.param as usize].offset();
     let host = (offset.abs() > 1e-4).then_some((controls.position(info) + offset).clamp(0.0, 1.0));
     for mark in ring.marks.iter().copied().chain(host) {
         ui.painter().circle_filled(pos2(x(mark), bar.center().y), 3.0, palette.modulation);
     }
     for (order, place) in now.iter().enumerate().rev() {
-        let radius = if order == 0 { 3.0 } else { 2.0 };
-        ui.painter().circle(
-            pos2(x(*place), bar.center().y),
-            radius,
-            palette.panel,
-            Stroke::new(1.2, palette.modulation),
-        );
+        let radius = if order == 0 { 2.6 } else { 1.8 };
+        disc(ui.painter(), pos2(x(*place), bar.center().y), radius, palette.text, Stroke::new(0.8, palette.panel));
     }
     face::paint_mark(ui.painter(), bar.center_bottom() - vec2(0.0, 2.0), turned.mark.as_ref(), palette);
     show_value(ui, value, Align2::RIGHT_CENTER, info, &turned, controls);
+    ui.set_opacity(opacity);
 }
 
 /// Shows the value, or the field in which it is typed.
