@@ -1,12 +1,14 @@
 //! The catalogue of sounds: those of the factory and the user's own.
 
 use super::library::Library;
+pub use super::moods::MOODS;
+use super::moods::moods;
 pub use super::traits::tagged_material;
 use super::traits::{traits, true_tags};
 use super::{Family, KitPreset, Playable, Preset};
 use crate::error::{Error, LEAST_SIMILARITY, similarity};
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Words that people search for, and those that our sounds have for the same. Makers' names stand for the kind of instrument.
 const OTHER_WORDS: &[(&str, &str)] = &[
@@ -51,6 +53,8 @@ pub struct Listed {
     pub path: Option<PathBuf>,
     /// Its tags, and those that follow from its knobs.
     tags: Vec<String>,
+    /// See [`Listed::moods`].
+    moods: OnceLock<Vec<&'static str>>,
     /// The text in which words are searched, in lower case.
     text: String,
 }
@@ -69,7 +73,7 @@ impl Listed {
     fn new(playable: Playable, path: Option<PathBuf>) -> Self {
         let tags = tags_of(&playable);
         let words = [playable.name(), playable.comment(), playable.details(), &tags.join(" ")].join(" ");
-        let mut listed = Self { playable, path, tags, text: words.to_lowercase() };
+        let mut listed = Self { playable, path, tags, moods: OnceLock::new(), text: words.to_lowercase() };
         listed.text = format!("{} {}", listed.text, listed.family_name().replace('_', " "));
         listed
     }
@@ -83,6 +87,15 @@ impl Listed {
     /// sounds (`short`, `ringing`, `long`, or `sustained` while a key is held).
     pub fn tags(&self) -> &[String] {
         &self.tags
+    }
+
+    /// Those of [`MOODS`] that a preset has by its knobs, computed when they are first asked for. Only lists that show moods have them:
+    /// they are no tags in files, and no words that are searched.
+    pub fn moods(&self) -> &[&'static str] {
+        self.moods.get_or_init(|| match &self.playable {
+            Playable::Preset(preset) => moods(preset),
+            Playable::Kit(_) => Vec::new(),
+        })
     }
 
     /// Whether it has this tag. Case does not matter.

@@ -16,6 +16,7 @@ mod kit_load;
 pub(crate) mod library;
 mod load;
 mod mode_list;
+mod moods;
 pub(crate) mod pair;
 mod phrase;
 mod programs;

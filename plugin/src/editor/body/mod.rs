@@ -9,5 +9,6 @@ pub(super) mod origin;
 pub(super) mod page;
 pub(super) mod pick;
 mod pointing;
+pub(super) mod small;
 mod tool;
 pub(super) mod view;
