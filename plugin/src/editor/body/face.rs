@@ -2,7 +2,7 @@
 
 use crate::editor::theme::Palette;
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
-use egui::{Painter, Pos2, Rect, Shape, Stroke};
+use egui::{Painter, Rect, Shape, Stroke};
 use sprung_picture::{Figure, Ink, Picture, Pose};
 
 /// Space between a body and the frame that says that it is only a guess.
@@ -10,8 +10,7 @@ const AROUND: f32 = 14.0;
 
 /// Paints a dashed frame around a body that is drawn for a table of modes, which knows of none.
 pub(crate) fn paint_guess(painter: &Painter, rect: Rect, figure: &Figure, palette: &Palette) {
-    let places: Vec<Pos2> = figure.points.iter().map(|point| figure.form.on(rect, *point, 0.0)).collect();
-    let frame = Rect::from_points(&places).expand(AROUND).intersect(rect);
+    let frame = figure.frame(rect).expand(AROUND).intersect(rect);
     let corners = [frame.left_top(), frame.right_top(), frame.right_bottom(), frame.left_bottom(), frame.left_top()];
     painter.extend(Shape::dashed_line(&corners, Stroke::new(1.0, palette.muted), 6.0, 5.0));
 }
