@@ -1,6 +1,6 @@
 //! Bars, plates and boxes: an upper face that bends, and the sides in front and at the right end below it.
 
-use crate::figure::{Bar, Figure};
+use crate::figure::{BLOCK, Bar, Figure};
 use crate::light::{Facet, Finish, Gloss};
 use crate::mesh::{ABOVE, Grid, Mesh, Moved};
 use crate::view::lying;
@@ -60,13 +60,8 @@ pub(crate) fn add_bar(mesh: &mut Mesh, figure: &Figure, bar: &Bar, moved: &Moved
         }
     }
     if bar.is_clamped {
-        add_block(
-            mesh,
-            &Finish { gloss: Gloss::Wood, ..Finish::of("maple") },
-            [[-1.0, -0.78], [-0.2, 0.2]],
-            [0.05, -0.16],
-            moved,
-        );
+        let (width, depth, up) = BLOCK;
+        add_block(mesh, &Finish::of("maple"), [[-1.0, -0.78], [-width, width]], [up, -depth], moved);
     }
 }
 

@@ -2,6 +2,8 @@
 
 use crate::form::Form;
 use crate::light::{Finish, Gloss, tint};
+use crate::view::lying;
+use emath::Rect;
 use sprung::preset::Family;
 use sprung::sound::bodies::{BedKind, Body, Model, Point};
 use sprung::sound::pairs::{Link, Pair};
@@ -67,6 +69,17 @@ pub(crate) struct Tube {
     pub has_cap: bool,
 }
 
+impl Tube {
+    /// The radius of its open end: that of a cone ends in a bell.
+    pub(crate) fn mouth(&self) -> f32 {
+        let [left, right] = self.radius;
+        if left < right { 1.5 * right } else { right }
+    }
+}
+
+/// Half the width of the block that holds a tine, how deep it is, and how high.
+pub(crate) const BLOCK: (f32, f32, f32) = (0.2, 0.16, 0.05);
+
 /// What is below the head of a drum. It only tells drums apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drum {
@@ -106,7 +119,7 @@ impl Build {
             Model::StoppedTube => Self::Tube(Tube { radius: [0.12, 0.12], has_cap: true }),
             Model::Cone { truncation } => {
                 let narrow = (*truncation / (1.0 + truncation)) as f32;
-                Self::Tube(Tube { radius: [0.17 * narrow.max(0.12), 0.17], has_cap: false })
+                Self::Tube(Tube { radius: [0.15 * narrow.max(0.12), 0.15], has_cap: false })
             }
             Model::Bed(bed) if matches!(bed.kind, BedKind::Box | BedKind::Shell) => Self::Slab(0.42),
             Model::Plate { .. } | Model::Bed(_) => Self::Slab(0.045),
@@ -171,6 +184,47 @@ impl Figure {
         let is_small = self.grid == self.form.small_grid();
         let grid = if is_small { form.small_grid() } else { form.grid() };
         Self { form, grid, points: Form::points(grid), ..self }
+    }
+
+    /// What it covers in a picture at rest, without a body that is joined to it.
+    pub fn frame(&self, rect: Rect) -> Rect {
+        let view = self.form.view(rect);
+        let points = self.points.iter().map(|point| self.form.in_space(*point, 0.0));
+        Rect::from_points(&points.chain(self.beyond()).map(|at| view.at(at)).collect::<Vec<_>>())
+    }
+
+    /// The farthest places of what belongs to it beyond its points.
+    fn beyond(&self) -> Vec<[f32; 3]> {
+        let ends = [-1.0, 1.0];
+        let below = |down: f32| self.points.iter().map(move |point| self.form.in_space(*point, -down));
+        match (self.form, self.build) {
+            (_, Build::Bar(bar)) => {
+                let (width, depth, up) = if bar.is_clamped { BLOCK } else { (bar.width, bar.thickness[0], 0.0) };
+                let corners = ends.map(|side| [lying([-1.0, side * width], up), lying([-1.0, side * width], -depth)]);
+                let right = ends.map(|side| lying([1.0, side * bar.width], -bar.thickness[0]));
+                corners.into_iter().flatten().chain(right).collect()
+            }
+            (_, Build::Tube(tube)) => {
+                let radii = [tube.radius[0], tube.mouth()];
+                let end = |(along, radius): (f32, f32)| {
+                    [
+                        lying([along, radius], 0.0),
+                        lying([along, -radius], 0.0),
+                        lying([along, 0.0], radius),
+                        lying([along, 0.0], -radius),
+                    ]
+                };
+                ends.into_iter().zip(radii).flat_map(end).collect()
+            }
+            (Form::Gong, _) => below(0.17).collect(),
+            (_, Build::Slab(thickness)) => below(thickness).collect(),
+            (Form::Round, _) => below(0.26).collect(),
+            (Form::Cymbal, _) => below(0.11).chain([[0.0, 0.0, 0.6]]).collect(),
+            (Form::HandBell, _) => vec![[0.0, 0.0, 1.62]],
+            (Form::Bell, _) => vec![[0.0, 0.0, 1.1]],
+            (Form::Glass, _) => vec![[0.0, 0.42, 0.0]],
+            _ => Vec::new(),
+        }
     }
 
     /// Whether it is for a large picture.

@@ -34,7 +34,7 @@ pub(crate) fn add(mesh: &mut Mesh, figure: &Figure, moved: &Moved) {
     match (form, figure.build) {
         (Form::Gong, _) => band(&[0.0, -0.06, -0.12, -0.17], &[1.0, 1.0, 0.99, 0.975], figure.finish),
         (Form::Cymbal, Build::Hat) => {
-            band(&[-0.08, -0.11], &[1.0, 1.0], figure.finish);
+            band(&[-0.08, -0.08, -0.11], &[0.95, 1.0, 1.0], figure.finish);
             band(&[-0.03, -0.08], &[0.96, 0.96], Finish::of("rubber"));
             band(&[0.0, -0.03], &[1.0, 1.0], figure.finish);
         }

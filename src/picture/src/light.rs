@@ -80,7 +80,10 @@ impl Finish {
             Gloss::Matt => (0.12 + 0.18 * sky + 0.72 * lit, 0.06 * squared(glance, 3)),
         };
         let colour = Rgba::from(self.tint.lerp_to_gamma(glow, share));
-        let seen = colour * light.max(0.75 * share) + Rgba::from(Color32::WHITE) * white.max(0.0);
+        // A metal's highlights are of its colour.
+        let own = if self.gloss == Gloss::Metal { 0.45 } else { 0.0 };
+        let white = Rgba::from(Color32::WHITE.lerp_to_gamma(self.tint, own)) * white.max(0.0);
+        let seen = colour * light.max(0.75 * share) + white;
         Color32::from(Rgba::from_rgb(seen.r().clamp(0.0, 1.0), seen.g().clamp(0.0, 1.0), seen.b().clamp(0.0, 1.0)))
     }
 }

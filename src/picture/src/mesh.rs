@@ -102,9 +102,8 @@ impl Mesh {
     pub(crate) fn add(&mut self, grid: &Grid, colour: impl Fn(usize, &Facet) -> Color32) {
         let (columns, rows) = (grid.columns, grid.rows());
         let first = self.vertices.len();
-        let seen = |number: usize| (self.view.at(grid.places[number]), colour(number, &grid.facet(number)));
-        let vertices: Vec<_> = (0..grid.places.len()).map(seen).collect();
-        self.vertices.extend(vertices);
+        self.vertices.extend(grid.places.iter().map(|place| (self.view.at(*place), Color32::TRANSPARENT)));
+        let mut is_used = vec![false; grid.places.len()];
         let corners = |column: usize, row: usize| {
             let at = row * columns + column;
             [at, at + 1, at + columns + 1, at + columns]
@@ -119,9 +118,15 @@ impl Mesh {
         for (row, column) in (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| (row, column))) {
             if grid.has_two_sides || front(column, row) {
                 let corners = corners(column, row);
+                corners.iter().for_each(|corner| is_used[*corner] = true);
                 let nearness = dot(grid.places[corners[0]], VIEW) + dot(grid.places[corners[2]], VIEW);
                 self.patches.push((nearness + grid.lift, corners.map(|corner| (first + corner) as u32)));
             }
+        }
+        // Light is slow: only what is seen has some.
+        for (number, (_, seen)) in self.vertices[first..].iter_mut().enumerate().filter(|(number, _)| is_used[*number])
+        {
+            *seen = colour(number, &grid.facet(number));
         }
         self.add_outline(grid, first, &front);
     }

@@ -182,6 +182,7 @@ mod tests {
     use super::*;
     use crate::BodyShape;
     use sprung::preset::Preset;
+    use sprung::sound::bodies::{Body, Model};
 
     #[test]
     fn a_joined_body_stands_at_the_right_and_the_loudest_mode_has_its_lines() {
@@ -210,6 +211,21 @@ mod tests {
         }
         let alone = |mode: usize| (0..64).map(|other| if other == mode { 1.0 } else { 0.0 }).collect::<Vec<f32>>();
         assert!((1..16).any(|mode| shape.lines_of(&alone(mode)) != shape.lines_of(&[])), "the loudest mode's");
+    }
+
+    #[test]
+    fn a_frame_is_about_as_large_as_its_body() {
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(400.0, 300.0));
+        for (id, model) in Model::ALL.iter().filter(|(id, _)| !["mass", "string"].contains(id)) {
+            let figure = Figure::of(&Body::new(model.clone()));
+            let picture = Picture::of(rect, &figure, &Pose::default(), Color32::WHITE);
+            let places: Vec<Pos2> = picture.vertices.iter().map(|(at, _)| *at).collect();
+            let (body, frame) = (Rect::from_points(&places), figure.frame(rect));
+            assert!(
+                frame.expand(6.0).contains_rect(body) && body.expand(10.0).contains_rect(frame),
+                "{id}: {frame:?} {body:?}"
+            );
+        }
     }
 
     #[test]

@@ -37,6 +37,9 @@ pub fn suggested_body(family: Option<Family>, tags: &[String]) -> Body {
     let id = match family {
         Some(Family::Kick | Family::Snare | Family::Tom | Family::HandDrum) => "membrane",
         Some(Family::Hat | Family::Cymbal) => "free_disc",
+        Some(Family::Percussion) if has("clap") => "free_plate",
+        Some(Family::Percussion) if has("whistle") => "open_tube",
+        Some(Family::Percussion) if has("bell") => "hand_bell",
         Some(Family::Percussion) => "free_bar",
         Some(Family::Mallet) if has("pluck") => "tine",
         Some(Family::Mallet) if has("keys") || has("bell") || has("glass") => "free_bar",

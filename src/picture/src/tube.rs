@@ -22,8 +22,7 @@ pub(crate) fn around(tube: &Tube, share: f32, up: f32) -> [[f32; 3]; 9] {
 
 fn radius(tube: &Tube, share: f32) -> f32 {
     let [left, right] = tube.radius;
-    // A cone ends in a bell.
-    let flare = if left < right { 0.5 * right * (0..3).fold(share, |power, _| power * power) } else { 0.0 };
+    let flare = (tube.mouth() - right) * (0..3).fold(share, |power, _| power * power);
     left + (right - left) * share + flare
 }
 

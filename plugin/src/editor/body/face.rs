@@ -11,8 +11,7 @@ const AROUND: f32 = 14.0;
 
 /// What a body at rest takes of a picture, and the room in which its handles are taken hold of.
 pub(super) fn bounds(rect: Rect, figure: &Figure) -> Rect {
-    let places: Vec<Pos2> = figure.points.iter().map(|point| figure.form.on(rect, *point, 0.0)).collect();
-    Rect::from_points(&places).expand(AROUND).intersect(rect)
+    figure.frame(rect).expand(AROUND).intersect(rect)
 }
 
 /// Paints a dashed frame around a body that is drawn for a table of modes, which knows of none.
