@@ -43,17 +43,13 @@ struct Drag {
 }
 
 /// The picture's state.
+#[derive(Default)]
 pub(crate) struct BodyView {
     shape: Option<(Subject, BodyShape)>,
     swing: Swing,
     drag: Option<Drag>,
-    bounds: Rect,
-}
-
-impl Default for BodyView {
-    fn default() -> Self {
-        Self { shape: None, swing: Swing::default(), drag: None, bounds: Rect::NOTHING }
-    }
+    /// The picture of the shape, and what the body takes of it.
+    bounds: Option<(Rect, Rect)>,
 }
 
 impl BodyView {
@@ -72,7 +68,7 @@ impl BodyView {
 
     /// Around the body that was shown.
     pub(crate) fn bounds(&self) -> Rect {
-        self.bounds
+        self.bounds.map_or(Rect::NOTHING, |(_, bounds)| bounds)
     }
 
     /// Shows the body of a sound, on the stage or in a smaller picture. Returns the caption.
@@ -91,7 +87,10 @@ impl BodyView {
         }
         let mut shape = match self.shape.take() {
             Some((subject, shape)) if subject == shown.subject() => shape,
-            _ => BodyShape::of(&shown.patch().modes, shown.family(), shown.tags()),
+            _ => {
+                self.bounds = None;
+                BodyShape::of(&shown.patch().modes, shown.family(), shown.tags())
+            }
         };
         let mut subject = shown.subject();
         let (mut lit, mut focused) = (None, None);
@@ -113,8 +112,10 @@ impl BodyView {
         let [strike, ear] = self.places(&shape, shown, controls);
         let (painter, palette, figure) = (ui.painter(), controls.palette, &shape.figure);
         let struck = face::paint(painter, rect, figure, &moved, strike, palette);
+        let known = self.bounds.filter(|(picture, _)| *picture == rect);
+        let (_, bounds) = *self.bounds.insert(known.unwrap_or_else(|| (rect, face::bounds(rect, figure))));
         if shape.origin == Origin::Table && shown.preset().is_some() {
-            face::paint_guess(painter, rect, figure, palette);
+            face::paint_guess(painter, bounds, palette);
         }
         if is_stage {
             tool::paint(painter, rect, figure.form, strike, controls);
@@ -134,7 +135,6 @@ impl BodyView {
         };
         struck.into_iter().for_each(|at| face::paint_ring(painter, at, look(Handle::Strike), palette));
         heard.into_iter().for_each(|at| face::paint_ear(painter, at, look(Handle::Ear), palette));
-        self.bounds = face::bounds(rect, figure);
         let caption = shape.caption.clone();
         self.shape = Some((subject, shape));
         caption
