@@ -11,7 +11,7 @@ use vst3::ComWrapper;
 use vst3::Steinberg::IPlugFrame;
 
 /// The knob of the decay in the window as it opens.
-const KNOB: [i16; 2] = [550, 527];
+const KNOB: [i16; 2] = [593, 527];
 /// Where the menu's entries may be below the pointer that opened it.
 const ENTRIES: std::ops::Range<i16> = 30..180;
 

@@ -15,8 +15,7 @@ pub(super) fn bounds(rect: Rect, figure: &Figure) -> Rect {
 }
 
 /// Paints a dashed frame around a body that is drawn for a table of modes, which knows of none.
-pub(crate) fn paint_guess(painter: &Painter, rect: Rect, figure: &Figure, palette: &Palette) {
-    let frame = bounds(rect, figure);
+pub(super) fn paint_guess(painter: &Painter, frame: Rect, palette: &Palette) {
     let corners = [frame.left_top(), frame.right_top(), frame.right_bottom(), frame.left_bottom(), frame.left_top()];
     painter.extend(Shape::dashed_line(&corners, Stroke::new(1.0, palette.muted), 6.0, 5.0));
 }

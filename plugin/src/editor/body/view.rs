@@ -43,17 +43,13 @@ struct Drag {
 }
 
 /// The picture's state.
+#[derive(Default)]
 pub(crate) struct BodyView {
     shape: Option<(Subject, BodyShape)>,
     swing: Swing,
     drag: Option<Drag>,
-    bounds: Rect,
-}
-
-impl Default for BodyView {
-    fn default() -> Self {
-        Self { shape: None, swing: Swing::default(), drag: None, bounds: Rect::NOTHING }
-    }
+    /// The picture of the shape, and what the body takes of it.
+    bounds: Option<(Rect, Rect)>,
 }
 
 impl BodyView {
@@ -72,7 +68,7 @@ impl BodyView {
 
     /// Around the body that was shown.
     pub(crate) fn bounds(&self) -> Rect {
-        self.bounds
+        self.bounds.map_or(Rect::NOTHING, |(_, bounds)| bounds)
     }
 
     /// Shows the body of a sound, on the stage or in a smaller picture. Returns the caption.
@@ -91,7 +87,10 @@ impl BodyView {
         }
         let mut shape = match self.shape.take() {
             Some((subject, shape)) if subject == shown.subject() => shape,
-            _ => BodyShape::of(&shown.patch().modes, shown.family(), shown.tags()),
+            _ => {
+                self.bounds = None;
+                BodyShape::of(&shown.patch().modes, shown.family(), shown.tags())
+            }
         };
         let mut subject = shown.subject();
         let (mut lit, mut focused) = (None, None);
@@ -115,8 +114,10 @@ impl BodyView {
         let pose = Pose { displacements: &moved, nodal: shape.lines_of(energies), strike };
         let struck = face::paint(painter, rect, figure, &pose, palette);
         let place = shape.place(rect);
+        let known = self.bounds.filter(|(picture, _)| *picture == place);
+        let (_, bounds) = *self.bounds.insert(known.unwrap_or_else(|| (place, face::bounds(place, figure))));
         if shape.origin == Origin::Table && shown.preset().is_some() {
-            face::paint_guess(painter, place, figure, palette);
+            face::paint_guess(painter, bounds, palette);
         }
         if is_stage {
             tool::paint(painter, place, figure.form, strike, controls);
@@ -136,7 +137,6 @@ impl BodyView {
         };
         struck.into_iter().for_each(|at| face::paint_ring(painter, at, look(Handle::Strike), palette));
         heard.into_iter().for_each(|at| face::paint_ear(painter, at, look(Handle::Ear), palette));
-        self.bounds = face::bounds(place, figure);
         let caption = shape.caption.clone();
         self.shape = Some((subject, shape));
         caption

@@ -139,6 +139,22 @@ fn arrow_keys_move_ring_and_ear() {
 }
 
 #[test]
+fn arrow_keys_move_the_place_of_a_tables_pluck_in_one_step() {
+    let mut band = Band::of(facing(Face::Play, "Plucked String", SIZE, 1.0, Theme::Dark));
+    let before = band.stage.params.state();
+    band.stage.harness.get_by_label("Struck body").focus();
+    band.passes(2);
+    for _ in 0..3 {
+        band.stage.harness.key_press(Key::ArrowLeft);
+        band.passes(2);
+    }
+    let moved = before.values.get(Param::PluckPosition) - band.stage.params.state().values.get(Param::PluckPosition);
+    assert!((moved - 3.0).abs() < 0.01, "{moved}");
+    band.undo();
+    assert!(band.stage.params.state() == before);
+}
+
+#[test]
 fn a_body_that_hears_nothing_of_the_place_has_no_ear() {
     for (id, model) in Model::ALL {
         let body = Body::new(model.clone());
