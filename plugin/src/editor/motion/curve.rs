@@ -181,7 +181,7 @@ fn paint_label(ui: &Ui, rect: Rect, corner: &Corner, controls: &Controls) {
     let size = vec2(110.0, 14.0);
     // Beside the curve: that begins at the left end, and mostly comes to the right end from below.
     let (by, align) = match corner.place {
-        Pos2 { y, .. } if y <= rect.top() => (vec2(20.0, -15.0), Align2::LEFT_CENTER),
+        Pos2 { y, .. } if y <= rect.top() => (vec2(32.0, -15.0), Align2::LEFT_CENTER),
         Pos2 { x, .. } if x <= rect.left() => (vec2(10.0, 7.0), Align2::LEFT_CENTER),
         _ => (vec2(-size.x - 10.0, -21.0), Align2::RIGHT_CENTER),
     };

@@ -177,7 +177,8 @@ pub(crate) fn show_bar(
     }
     face::paint_bar_halo(ui.painter(), bar, turned.halo, palette);
     let edge = if turned.is_focused || turned.is_hovered { palette.text } else { palette.modulation };
-    ui.painter().circle(pos2(end, bar.center().y), 5.0, palette.panel, Stroke::new(1.8, edge));
+    let radius = (0.6 * bar.height()).min(5.0);
+    ui.painter().circle(pos2(end, bar.center().y), radius, palette.panel, Stroke::new(1.8, edge));
     let offset = controls.params.knobs()[info.param as usize].offset();
     let host = (offset.abs() > 1e-4).then_some((controls.position(info) + offset).clamp(0.0, 1.0));
     for mark in ring.marks.iter().copied().chain(host) {
