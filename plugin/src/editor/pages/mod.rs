@@ -115,7 +115,7 @@ impl Pages {
         let [head, area] = [inside.with_max_y(inside.top() + HEAD - 4.0), inside.with_min_y(inside.top() + HEAD)];
         let help = Rect::from_min_size(pos2(head.right() - HELP, head.top()), vec2(HELP, head.height()));
         let asks = help_tab(ui, help, self.topic(), controls);
-        let head = self.title(ui, head.with_max_x(help.left() - GAP), controls);
+        let head = self.title(ui, head.with_max_x(help.left() - GAP), bodies.second.is_some(), controls);
         let said = match self.part {
             "Body" => self.body.show(ui, [head, area], (shown, energies), controls).map(Err),
             "Tuning" => self.tuning.show(ui, area, shown, down, controls),
@@ -135,17 +135,23 @@ impl Pages {
     }
 
     /// Shows the name of the chosen part, and what it does. Returns the place beside it.
-    fn title(&self, ui: &Ui, rect: Rect, controls: &Controls) -> Rect {
+    fn title(&self, ui: &Ui, rect: Rect, is_pair: bool, controls: &Controls) -> Rect {
         let palette = controls.palette;
-        let name = if self.part == "Body" { self.body.chosen() } else { self.part };
+        let name = match (self.part, self.body.chosen()) {
+            ("Body", "Body") if is_pair => "Body 1",
+            ("Body", chosen) => chosen,
+            (part, _) => part,
+        };
         let title = line(ui.painter(), rect, Align2::LEFT_CENTER, name, TEXT + 3.5, palette.text);
         let rest = rect.with_min_x(title.right() + 2.0 * GAP);
         let knobs = parts::groups(self.part);
         let moves = knobs.iter().flat_map(|(_, knobs)| knobs).any(|info| controls.own(info).is_some());
+        // Beside the body are its tabs.
         let (words, colour) = match lamps::of(self.part) {
-            _ if moves && self.part != "Body" => ([ADDED, "added to each pad"], palette.accent_text),
+            _ if self.part == "Body" => (["", ""], palette.muted),
+            _ if moves => ([ADDED, "added to each pad"], palette.accent_text),
             Some(lamp) => ([lamp.help, ""], palette.muted),
-            None => (["", ""], palette.muted),
+            None => ([parts::help(self.part), ""], palette.muted),
         };
         let words = fitting(ui.painter(), &words, SMALL, rest.width());
         line(ui.painter(), rest, Align2::LEFT_CENTER, words, SMALL, colour);

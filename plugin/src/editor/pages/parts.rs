@@ -86,6 +86,21 @@ pub(super) fn groups(part: Part) -> Vec<Group> {
     })
 }
 
+/// What a part without a lamp does.
+pub(super) fn help(part: Part) -> &'static str {
+    match part {
+        "Pitch" => "Transposes, sweeps, shakes and slides the pitch; how far the pitch wheel bends it.",
+        "Voices" => "How many notes sound at once, and how many voices each has.",
+        "Tuning" => "The scale, and the frequency of each key.",
+        "Strike" => "How velocity and chance change each strike.",
+        "Body" => "Its modes, how they ring, and what it is made of.",
+        "Body 2" => "What the other body is made of.",
+        "Joint" => "How the two bodies act on each other, and how loud the second one is.",
+        "Output" => "Level, place and limiter.",
+        _ => "",
+    }
+}
+
 /// The page of the manual that explains a part.
 pub(super) fn topic(part: Part) -> &'static str {
     match part {

@@ -134,7 +134,8 @@ pub(super) fn knob_at(
 mod tests {
     use super::*;
     use crate::editor::motion::sources::section_of;
-    use crate::editor::pages::parts::{Part, groups};
+    use crate::editor::pages::parts::groups;
+    use crate::editor::pages::path::PATH;
     use crate::editor::widgets::text;
     use sprung::patch::routes::Source;
 
@@ -147,9 +148,7 @@ mod tests {
 
     /// The knobs of all parts of the sound's way.
     fn parts() -> impl Iterator<Item = &'static ParamInfo> {
-        let others = moving();
-        let is_part = move |section: &Part| !others.contains(section) && !["Control", "Routes"].contains(section);
-        let parts = PARAMS.chunk_by(|a, b| a.section == b.section).map(|rows| rows[0].section).filter(is_part);
+        let parts = PATH.into_iter().flatten().copied().flatten().copied();
         parts.flat_map(groups).flat_map(|(_, knobs)| knobs)
     }
 

@@ -1,8 +1,8 @@
 //! A part of the sound's way where it is drawn: it can be chosen by a click, and its lamp switches it.
 
-use super::parts::Part;
+use super::parts::{self, Part};
 use crate::editor::controls::{Controls, Hint};
-use crate::editor::lamps::Lamp;
+use crate::editor::lamps::{self, Lamp};
 use crate::editor::routes::carry;
 use crate::editor::theme::RADIUS;
 use crate::editor::widgets::{outline, text};
@@ -48,10 +48,14 @@ impl Spot {
         if let Some(lamp) = self.lamp {
             let place = self.name.with_min_x(self.name.left() - LAMP).with_max_x(self.name.left());
             is_hovered |= lamp.show(ui, place, controls).hovered();
-            if is_hovered {
-                let does = if is_on { "switches it off" } else { "switches it on" };
-                *controls.hint = Hint::new(part, format!("{} Its lamp {does}.", lamp.help));
-            }
+        }
+        if is_hovered {
+            let help = match self.lamp {
+                Some(lamp) if is_on => format!("{} Its lamp switches it off.", lamp.help),
+                Some(lamp) => format!("{} Its lamp switches it on.", lamp.help),
+                None => lamps::of(part).map_or(parts::help(part), |lamp| lamp.help).to_owned(),
+            };
+            *controls.hint = Hint::new(part, help);
         }
         let colour = if is_on || is_chosen || is_hovered { palette.text } else { palette.muted };
         text::line(ui.painter(), self.name, Align2::LEFT_CENTER, self.title, self.size, colour);

@@ -91,6 +91,7 @@ fn the_bodies_of_a_pair_and_their_joint_are_chosen_on_the_way() {
     band.open("Body 2");
     assert!(has(&band, "Strike place") && !has(&band, "Heard of second"));
     band.open("Body");
+    assert!(band.stage.paints("Its modes, how they ring"), "the pointer is on it");
     assert!(!has(&band, "Strike place") && band.stage.harness.query_by_label("Modes of the body").is_some());
     let band = Band::new("Marimba", SIZE, Theme::Dark);
     assert!(band.stage.harness.query_by_role_and_label(Role::Tab, "Joint").is_none());
