@@ -63,6 +63,11 @@ impl Pages {
         TOPICS[self.part.1]
     }
 
+    /// Selects a part of the sound's way.
+    pub(super) fn select(&mut self, part: Part) {
+        (self.part, self.seen) = (part, Vec2::ZERO);
+    }
+
     /// Ends the user's action, and releases the held keys.
     pub(super) fn leave(&mut self, controls: &mut Controls) {
         self.body.leave(controls);
@@ -125,7 +130,7 @@ impl Pages {
         let way = rect.with_max_x(rect.right() - HELP);
         if let Some(part) = path::show(ui, way, self.part.0, about, controls) {
             self.leave(controls);
-            (self.part, self.seen) = (part, Vec2::ZERO);
+            self.select(part);
         }
         let help = Rect::from_min_size(pos2(way.right(), rect.top()), vec2(HELP, HELP));
         help_tab(ui, help, self.topic(), controls).then_some(Request::Manual)

@@ -3,6 +3,7 @@
 mod animation;
 mod body_numbers;
 mod browsing;
+mod chosen_pad;
 mod comparing;
 mod devices;
 mod dropped;
