@@ -129,6 +129,6 @@ impl BodyEdit {
 }
 
 /// How long to wait after work that began at `start`, in seconds: most of the time is left for the window.
-pub(super) fn rest(start: Instant) -> f64 {
+pub(in crate::editor) fn rest(start: Instant) -> f64 {
     CHANGES.max(4.0 * start.elapsed().as_secs_f64())
 }

@@ -30,14 +30,19 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, figure: &Figure, pose: &Pose,
 
 /// How a handle is painted: its size as a multiple of the smallest, whether its name stands beside it, and whether it has the focus.
 #[derive(Clone, Copy)]
-pub(super) struct Look {
+pub(crate) struct Look {
     pub(super) size: f32,
     pub(super) is_named: bool,
     pub(super) is_focused: bool,
 }
 
+impl Look {
+    /// A handle that only shows where its place is.
+    pub(crate) const SMALL: Self = Self { size: 1.0, is_named: false, is_focused: false };
+}
+
 /// Paints the ring around the place that is struck.
-pub(super) fn paint_ring(painter: &Painter, at: Pos2, look: Look, palette: &Palette) {
+pub(crate) fn paint_ring(painter: &Painter, at: Pos2, look: Look, palette: &Palette) {
     paint_handle(painter, at, look, palette.accent, palette);
     if look.is_named {
         name(painter, at + vec2(5.5 * look.size, 0.0), "strike", palette);

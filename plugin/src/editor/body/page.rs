@@ -124,7 +124,7 @@ impl BodyPage {
         for place in 0..MODELS.len() {
             let offset = vec2((place % columns) as f32, (place / columns) as f32) * size;
             let tile = Rect::from_min_size(rect.min + offset, size - vec2(4.0, 4.0));
-            if let Some(id) = self.tiles.show(ui, tile, place, body.map(|body| &body.model), controls) {
+            if let Some(id) = self.tiles.show(ui, tile, place, (body.map(|body| &body.model), false), controls) {
                 let changed = origin.with_model(part == Part::Second, Model::find(id));
                 picked = Some((changed, format!("model {}", model_name(id))));
             }
@@ -136,7 +136,7 @@ impl BodyPage {
         for (place, id) in DISCS.into_iter().enumerate() {
             let at = Rect::from_min_size(rect.min + vec2(place as f32 * size.x, height), size);
             let is_now = body.is_some_and(|body| body.material.id == id);
-            if disc(ui, at, id, (is_now, help), controls)
+            if disc(ui, at, id, (is_now, false, help), controls)
                 && let Some(material) = MATERIALS.iter().find(|material| material.id == id)
                 && let Some(body) = part.body_mut(&mut made)
             {

@@ -4,42 +4,44 @@ use super::face;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{RADIUS, SMALL};
 use crate::editor::widgets::text::line;
+use egui::style::ScrollAnimation;
 use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
-use sprung::sound::bodies::{Body, Model};
+use sprung::sound::bodies::Model;
 use sprung_picture::play::MODELS;
 use sprung_picture::{Figure, tint};
 
 /// Height of a tile from which on it has a name.
-const NAMED: f32 = 44.0;
+const NAMED: f32 = 40.0;
 
 /// The figures of the tiles.
 #[derive(Default)]
 pub(crate) struct Tiles(Vec<Figure>);
 
 impl Tiles {
-    /// Shows the tile at this place among them, lit for the model of a body. Returns the model's id if another is clicked.
+    /// Shows the tile at this place among them, lit for the model of a body, and scrolled to if that `is_new`. Returns the model's id if
+    /// another is clicked.
     pub(crate) fn show(
         &mut self,
         ui: &Ui,
         rect: Rect,
         place: usize,
-        now: Option<&Model>,
+        (now, is_new): (Option<&Model>, bool),
         controls: &mut Controls,
     ) -> Option<&'static str> {
         if self.0.is_empty() {
-            let model = |id| Model::find(id).cloned().unwrap_or(Model::String);
-            self.0 = MODELS.iter().map(|(id, _)| Figure::small(&Body::new(model(id)))).collect();
+            self.0 = MODELS.iter().map(|(id, _)| Figure::tile(id)).collect();
         }
         let (palette, (id, name)) = (controls.palette, MODELS[place]);
         let is_now = now.is_some_and(|model| model.id() == id);
         let is_lit = is_now || now.is_some_and(|model| is_kin(model, id));
-        let response = choice(ui, rect, ("thing", name), is_lit);
+        let response = choice(ui, rect, ("thing", name), is_lit, is_new);
         if response.hovered() {
             *controls.hint = Hint::new(name, "Make the body this.");
         }
         let face = if is_lit || response.hovered() { palette.raised } else { palette.ground };
         ui.painter().rect(rect, RADIUS, face, edge(&response, is_lit, controls), StrokeKind::Inside);
-        let (below, around) = if rect.height() >= NAMED { (15.0, [7.0, 4.0]) } else { (0.0, [4.0, 3.0]) };
+        let (below, around) =
+            if rect.height() >= NAMED { (15.0, [0.13 * rect.width(), 4.0]) } else { (0.0, [4.0, 3.0]) };
         // A quarter of a pixel lower: edges on the centres of pixels are filled by some graphics drivers and not by others.
         let picture = rect.with_max_y(rect.bottom() - below).shrink2(around.into()).translate(vec2(0.0, 0.25));
         face::paint_still(ui.painter(), picture, &self.0[place], palette);
@@ -51,10 +53,17 @@ impl Tiles {
     }
 }
 
-/// Shows the disc of a material; `help` is what choosing it does. Returns whether it is chosen and was not.
-pub(crate) fn disc(ui: &Ui, rect: Rect, id: &str, (is_now, help): (bool, &str), controls: &mut Controls) -> bool {
+/// Shows the disc of a material, scrolled to if it `is_now` that of the body and that `is_new`; `help` is what choosing it does. Returns
+/// whether it is chosen and was not.
+pub(crate) fn disc(
+    ui: &Ui,
+    rect: Rect,
+    id: &str,
+    (is_now, is_new, help): (bool, bool, &str),
+    controls: &mut Controls,
+) -> bool {
     let palette = controls.palette;
-    let response = choice(ui, rect, ("material", id), is_now);
+    let response = choice(ui, rect, ("material", id), is_now, is_new);
     if response.hovered() {
         *controls.hint = Hint::new(id, help);
     }
@@ -69,8 +78,12 @@ pub(crate) fn disc(ui: &Ui, rect: Rect, id: &str, (is_now, help): (bool, &str), 
 }
 
 /// A picture to click, which is chosen or not.
-fn choice(ui: &Ui, rect: Rect, (kind, name): (&'static str, &str), is_now: bool) -> Response {
+fn choice(ui: &Ui, rect: Rect, (kind, name): (&'static str, &str), is_now: bool, is_new: bool) -> Response {
     let response = ui.interact(rect, Id::unique((kind, name)), Sense::click());
+    // In a row that scrolls, what is chosen or has the focus is to be seen.
+    if is_new && is_now || response.gained_focus() {
+        ui.scroll_to_rect_animation(rect, None, ScrollAnimation::none());
+    }
     response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_now, format!("{kind}: {name}")));
     response
 }

@@ -66,7 +66,7 @@ impl Category {
     }
 
     /// What fills it; for those that are never empty, nothing.
-    pub(super) fn invitation(self) -> &'static str {
+    pub(in crate::editor) fn invitation(self) -> &'static str {
         match self {
             Self::Favourites => "None yet: a click on the star before a name keeps the sound here.",
             Self::Recent => "None yet: the sounds that you load will be here, the last one first.",

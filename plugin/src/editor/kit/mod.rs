@@ -1,10 +1,15 @@
 //! The face of a kit: its pads, the sounds that can be put on them, and the chosen pad; of a preset, its keys.
 
+mod chips;
 mod detail;
 pub(super) mod edit;
+mod head;
 mod keys;
+mod live;
+mod mates;
 mod pads;
 mod sounds;
+mod turn;
 
 use crate::editor::browser::Browser;
 use crate::editor::controls::files::remake;
@@ -13,18 +18,17 @@ use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::keyboard::grid::KeyGrid;
 use crate::editor::theme::{GAP, PADDING, TEXT};
-use crate::editor::widgets::buttons::{Look, button, help_tab, tab};
+use crate::editor::widgets::buttons::{Look, button, help_tab};
 use crate::editor::widgets::text::line;
 use crate::link::Link;
-use crate::loaded::Loaded;
 use detail::Detail;
 use edit::{SECOND, change, copy, name_of, put, set, swap, take};
 use egui::{Align2, Rect, Ui, pos2, vec2};
-use pads::{Carried, Deed, Pads, ROWS};
+use live::{About, Bodies, Live};
+use pads::{Carried, Deed, Pads};
 use sounds::SoundList;
-use sprung::preset::{Playable, Preset};
+use sprung::preset::Playable;
 use sprung::units::note_name;
-use sprung_picture::{Figure, small_figure};
 use std::sync::Arc;
 
 /// What the user asks for.
@@ -32,6 +36,8 @@ pub(super) enum Request {
     Manual,
     /// To change the sound of the chosen pad.
     Edit,
+    /// To see the effects behind all pads.
+    Effects,
 }
 
 /// Shares of the width that sounds and the chosen pad have, and their least and greatest widths.
@@ -52,29 +58,8 @@ pub(super) struct KitPage {
     name: String,
     /// Whether a kit of the present sound was made, which is shown with the next pass.
     is_made: bool,
-    figures: Figures,
-}
-
-/// The figures of the kit's sounds, made anew only when these change.
-#[derive(Default)]
-struct Figures {
-    loaded: Option<Arc<Loaded>>,
-    sounds: Vec<(String, Preset)>,
-    figures: Vec<Figure>,
-}
-
-impl Figures {
-    fn of(&mut self, shown: &Shown) -> &[Figure] {
-        let sounds = shown.kit().map_or(&[][..], |kit| &kit.sounds);
-        let is_known = self.loaded.as_ref().is_some_and(|loaded| Arc::ptr_eq(loaded, shown.loaded()));
-        if !is_known && self.sounds != sounds {
-            let of =
-                |(_, preset): &(String, Preset)| small_figure(&preset.patch.modes, preset.guide.family, &preset.tags);
-            (self.sounds, self.figures) = (sounds.to_vec(), sounds.iter().map(of).collect());
-        }
-        self.loaded = Some(shown.loaded().clone());
-        &self.figures
-    }
+    bodies: Bodies,
+    live: Live,
 }
 
 impl KitPage {
@@ -82,6 +67,7 @@ impl KitPage {
     pub(super) fn leave(&mut self, controls: &mut Controls) {
         self.detail.leave(controls);
         self.sounds.leave();
+        self.pads.swap_next(false);
         self.release(controls.params.link());
     }
 
@@ -97,13 +83,13 @@ impl KitPage {
         self.audition.release(link);
     }
 
-    /// Shows the face; `down` has one bit for each held key.
+    /// Shows the face; `down` has one bit for each held key, and the energies are those of the newest note's modes.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
         rect: Rect,
         shown: &mut Shown,
-        (down, browser): (u128, &mut Browser),
+        (down, energies, browser): (u128, &[f32], &mut Browser),
         controls: &mut Controls,
     ) -> Option<Request> {
         let palette = controls.palette;
@@ -133,67 +119,56 @@ impl KitPage {
         let inner = middle.shrink(PADDING);
         let (head, below) = inner.split_top_bottom_at_y(inner.top() + HEAD);
         let request = self.head(ui, head, shown, controls);
+        self.bodies.follow(shown);
+        self.live.follow(&self.bodies, shown, energies, controls);
         let clicked = self.sounds.show(ui, list.shrink(PADDING), browser.sounds(), controls);
         let key = self.pads.chosen();
-        let figures = self.figures.of(shown);
+        let is_swapping = self.pads.is_swapping();
+        let about = About { shown, bodies: &self.bodies, live: &self.live, key, is_swapping };
         // Before the pads, which choose another: what is typed for this one is taken first.
-        let mut deed = self.detail.show(ui, detail.shrink(PADDING), key, (shown, figures), controls);
+        let mut deed = self.detail.show(ui, detail.shrink(PADDING), &about, controls);
         if self.shows_keys {
             if let Some(key) = keys::show(ui, below, &mut self.keys, shown, (down, Some(key)), controls) {
                 self.pads.choose(key);
             }
         } else {
-            deed = self.pads.show(ui, below.expand(2.0), (shown, figures, down), controls).or(deed);
+            deed = self.pads.show(ui, below.expand(2.0), (&about, down), controls).or(deed);
         }
         shown.follow(self.pads.chosen());
         let put_here = clicked.map(|sound| Deed::Drop(Arc::new(Carried::Sound(sound)), key));
         let deed = put_here.or(deed);
-        let edits = matches!(deed, Some(Deed::Edit(_)));
+        let asked = match deed {
+            Some(Deed::Edit(_)) => Some(Request::Edit),
+            Some(Deed::Effects) => Some(Request::Effects),
+            _ => request,
+        };
         if let Some(deed) = deed {
             self.detail.leave(controls);
             self.carry_out(ui, deed, shown, controls);
         }
         self.audition.request_end(ui);
-        if edits { Some(Request::Edit) } else { request }
+        asked
     }
 
-    /// Shows which pads are seen, and buttons to see others.
+    /// Shows the row above the pads.
     fn head(&mut self, ui: &Ui, rect: Rect, shown: &Shown, controls: &mut Controls) -> Option<Request> {
-        let palette = controls.palette;
         let rect = rect.with_max_y(rect.bottom() - 4.0);
-        let cell = |left: f32, width: f32| Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()));
-        // The keys are all of them.
-        let [lowest, highest] = if self.shows_keys { [0, 127] } else { self.pads.keys() };
-        let look = if self.shows_keys { Look::Disabled } else { Look::Plain };
-        for (place, (text, name, octaves)) in
-            [("‹", "Pads an octave lower", -1), ("›", "Pads an octave higher", 1)].into_iter().enumerate()
-        {
-            let at = cell(rect.left() + 112.0 * place as f32, 24.0);
-            if button(ui, at, text, name, look, palette).clicked() {
-                self.pads.go(octaves);
-            }
-        }
-        let range = format!("{} to {}", note_name(lowest), note_name(highest));
-        line(ui.painter(), cell(rect.left() + 26.0, 84.0), Align2::CENTER_CENTER, &range, TEXT, palette.muted);
-        let help = cell(rect.right() - 22.0, 22.0);
-        let [few, many] = ROWS;
-        for (place, (text, row)) in
-            [("Keys", None), ("8 × 8", Some(many)), ("4 × 4", Some(few))].into_iter().enumerate()
-        {
-            let at = cell(help.left() - 38.0 * (place + 1) as f32, 37.0);
-            let is_shown = if self.shows_keys { row.is_none() } else { row == Some(self.pads.row()) };
-            if tab(ui, at, text, is_shown, palette).clicked() {
+        let view = head::View { shows_keys: self.shows_keys, row: self.pads.row(), first: self.pads.keys()[0] };
+        match head::show(ui, rect, shown, view, controls)? {
+            head::Deed::Manual => return Some(Request::Manual),
+            head::Deed::Go(first) => self.pads.show_from(first),
+            head::Deed::Keys => {
                 self.release(controls.params.link());
-                self.shows_keys = row.is_none();
-                if let Some(row) = row {
-                    // The many begin with the kit's first pad, the few with what is chosen.
-                    let chosen = self.pads.chosen();
-                    let first = shown.kit().and_then(|kit| kit.pads.first()).map_or(chosen, |(key, _)| *key);
-                    self.pads.show_rows(row, if row == many { first } else { chosen });
-                }
+                self.pads.swap_next(false);
+                self.shows_keys = true;
+            }
+            head::Deed::Rows(row, first) => {
+                self.release(controls.params.link());
+                self.shows_keys = false;
+                self.pads.show_rows(row, first.unwrap_or(self.pads.chosen()));
             }
         }
-        help_tab(ui, help, "kits", controls).then_some(Request::Manual)
+        None
     }
 
     fn carry_out(&mut self, ui: &Ui, deed: Deed, shown: &Shown, controls: &mut Controls) {
@@ -221,6 +196,22 @@ impl KitPage {
             }
             Deed::Empty(_) => {}
             Deed::Edit(key) => take(key, controls),
+            Deed::Choose(key) => self.pads.choose(key),
+            Deed::Strike(key) => {
+                self.audition.strike(key, VELOCITY, ui.input(|input| input.time), controls.params.link());
+            }
+            Deed::Swapping => {
+                // In the list of all keys, none can be clicked to be swapped.
+                self.shows_keys = false;
+                self.pads.swap_next(!self.pads.is_swapping());
+            }
+            Deed::Swap(ways) => {
+                let pad = |key: u8| shown.loaded().kit.pad(key);
+                let [from, to] = ways.map(|key| pad(key).map_or_else(|| name_of(key), |pad| shown.pad_name(pad)));
+                change(format!("swapped {from} and {to}"), controls, |kit| swap(kit, ways));
+                self.pads.choose(ways[1]);
+            }
+            Deed::Effects => {}
         }
     }
 

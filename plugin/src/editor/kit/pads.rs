@@ -2,22 +2,27 @@
 
 use super::edit::name_of;
 use super::keys::about;
+use super::live::{About, Sounding, place};
 use crate::editor::body::face;
-use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::grid::velocity;
 use crate::editor::keyboard::held_key::HeldKey;
-use crate::editor::theme::{RADIUS, SMALL, TEXT};
+use crate::editor::theme::{Palette, RADIUS, SMALL, TEXT};
 use crate::editor::widgets::carried;
 use crate::editor::widgets::text::{fitting, least_width, line, paragraph, width};
 use crate::link::Link;
 use crate::loaded::Loaded;
-use egui::{Align2, DragAndDrop, Id, Key, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use egui::epaint::{Mesh, Vertex, WHITE_UV};
+use egui::{
+    Align2, Color32, DragAndDrop, Id, Key, Painter, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo,
+    pos2, vec2,
+};
 use sprung::internals::library::Listed;
 use sprung::params::Param;
 use sprung::sound::Pad;
 use sprung::units::note_name;
-use sprung_picture::Figure;
+use sprung_picture::{BodyShape, Figure, Pose};
+use std::f32::consts::TAU;
 use std::sync::Arc;
 
 /// Pads in a row of the few and of the many.
@@ -26,6 +31,13 @@ pub(super) const ROWS: [u8; 2] = [4, 8];
 const NAMED: f32 = 60.0;
 /// The gains at the ends of a pad's bar, in dB.
 const GAINS: [f32; 2] = [-36.0, 12.0];
+/// Radius of the ring around the number of a choke group.
+const RING: f32 = 6.5;
+/// How far a pad's face goes towards the colour of what sounds; and while its key is down, of one with a picture.
+const LIT: f32 = 0.3;
+const DOWN: f32 = 0.6;
+/// Corners of a glow.
+const CORNERS: usize = 24;
 
 /// What is being dragged; egui keeps it.
 #[derive(Clone)]
@@ -42,6 +54,13 @@ pub(super) enum Deed {
     Empty(u8),
     /// Its sound is to be edited.
     Edit(u8),
+    Choose(u8),
+    Strike(u8),
+    /// The chosen one is to be swapped with the one that is clicked next, or no longer.
+    Swapping,
+    Swap([u8; 2]),
+    /// The effects behind all pads are to be shown.
+    Effects,
 }
 
 /// The state of the pads.
@@ -52,12 +71,15 @@ pub(super) struct Pads {
     first: u8,
     /// The key of the chosen pad.
     chosen: u8,
+    /// Whether a click on another pad swaps it with the chosen one.
+    is_swapping: bool,
     held: HeldKey,
 }
 
 impl Default for Pads {
     fn default() -> Self {
-        Self { row: ROWS[0], first: super::edit::FIRST, chosen: super::edit::FIRST, held: HeldKey::default() }
+        let first = super::edit::FIRST;
+        Self { row: ROWS[0], first, chosen: first, is_swapping: false, held: HeldKey::default() }
     }
 }
 
@@ -91,10 +113,19 @@ impl Pads {
         [self.first, (self.first + self.row * self.row - 1).min(127)]
     }
 
-    /// Shows pads this many octaves higher, if there are keys.
-    pub(super) fn go(&mut self, octaves: i16) {
-        let first = i16::from(self.first) + 12 * octaves;
-        self.first = u8::try_from(first).ok().filter(|first| *first < 128).unwrap_or(self.first);
+    /// Whether a click on another pad swaps it with the chosen one.
+    pub(super) fn is_swapping(&self) -> bool {
+        self.is_swapping
+    }
+
+    /// Lets the next click on another pad swap it with the chosen one, or no longer.
+    pub(super) fn swap_next(&mut self, is_swapping: bool) {
+        self.is_swapping = is_swapping;
+    }
+
+    /// Shows the pads from a key on.
+    pub(super) fn show_from(&mut self, first: u8) {
+        self.first = first;
     }
 
     /// Releases the key that the mouse holds.
@@ -102,27 +133,28 @@ impl Pads {
         self.held.release(link);
     }
 
-    /// Shows the pads; `down` has one bit for each held key, `figures` are those of the kit's sounds.
+    /// Shows the pads; `down` has one bit for each held key.
     pub(super) fn show(
         &mut self,
         ui: &Ui,
         rect: Rect,
-        (shown, figures, down): (&Shown, &[Figure], u128),
+        (kit, down): (&About, u128),
         controls: &mut Controls,
     ) -> Option<Deed> {
         let group = controls.value(Param::Choke.info());
-        let kit = &shown.loaded().kit;
-        let choke = |key: u8| kit.pad(key).map_or(0, |pad| kit.choke(pad, group));
+        let (shown, pads) = (kit.shown, &kit.shown.loaded().kit);
+        let choke = |key: u8| pads.pad(key).map_or(0, |pad| pads.choke(pad, group));
         let (pointer, is_released) = ui.input(|input| (input.pointer.latest_pos(), input.pointer.any_released()));
         let carried = DragAndDrop::payload::<Carried>(ui.ctx());
         let empties = ui.input(|input| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace));
+        self.is_swapping &= !ui.input(|input| input.key_pressed(Key::Escape));
         let size = rect.size() / f32::from(self.row);
         let (mut touched, mut deed, chosen) = (None, None, self.chosen);
         for key in self.first..=self.keys()[1] {
             let (column, row) = ((key - self.first) % self.row, self.row - 1 - (key - self.first) / self.row);
             let cell = Rect::from_min_size(rect.min + vec2(f32::from(column), f32::from(row)) * size, size).shrink(2.0);
             let response = ui.interact(cell, Id::unique(("pad", key)), Sense::click_and_drag());
-            let pad = kit.pad(key);
+            let pad = pads.pad(key);
             let name = pad.map(|pad| shown.pad_name(pad)).unwrap_or_default();
             let is_chosen = key == chosen;
             response.widget_info(|| {
@@ -132,16 +164,21 @@ impl Pads {
             if is_under {
                 *controls.hint = Hint::new(note_name(key), about(key, shown, group));
             }
-            if response.is_pointer_button_down_on() && carried.is_none() && pad.is_some() {
+            if response.is_pointer_button_down_on() && carried.is_none() && pad.is_some() && !self.is_swapping {
                 if is_under {
                     touched = pointer.map(|at| (key, velocity(cell, at)));
                 } else {
                     DragAndDrop::set_payload(ui.ctx(), Carried::Pad(key, shown.loaded().clone()));
                 }
             }
-            // At the end, so that what is typed for another pad has been taken by then.
             if response.clicked() || response.drag_stopped() && is_under {
-                self.chosen = key;
+                if self.is_swapping && !is_chosen {
+                    deed = Some(Deed::Swap([chosen, key]));
+                } else {
+                    // At the end, so that what is typed for another pad has been taken by then.
+                    self.chosen = key;
+                }
+                self.is_swapping = false;
             }
             if empties && response.has_focus() && pad.is_some() {
                 deed = Some(Deed::Empty(key));
@@ -154,17 +191,22 @@ impl Pads {
                 key,
                 name: &name,
                 pad,
-                figure: pad.and_then(|pad| figures.get(pad.sound)),
+                figure: pad.and_then(|pad| kit.bodies.figure(pad.sound)),
                 group,
                 is_down: down >> key & 1 == 1 || self.held.key() == Some(key),
+                sounding: kit.live.of(key).and_then(|sounding| Some((sounding, kit.bodies.shape(pad?.sound)?))),
                 is_chosen,
                 is_mate: group > 0 && group == choke(chosen),
-                is_aim: is_under && carried.is_some(),
+                is_aim: is_under && (carried.is_some() || self.is_swapping),
                 has_focus: response.has_focus(),
             };
             face.paint(ui, cell, controls);
         }
         self.held.follow(touched, controls.params.link());
+        if self.is_swapping {
+            let name = pads.pad(chosen).map_or_else(|| name_of(chosen), |pad| shown.pad_name(pad));
+            *controls.hint = Hint::new(format!("Swap {name} with …"), "Click the other pad. Esc cancels.");
+        }
         if let Some(carried) = carried {
             let name = match &*carried {
                 Carried::Pad(key, _) => name_of(*key),
@@ -184,6 +226,8 @@ struct Face<'a> {
     figure: Option<&'a Figure>,
     group: u8,
     is_down: bool,
+    /// What sounds on it, with the shapes of its body's modes.
+    sounding: Option<(&'a Sounding, &'a BodyShape)>,
     is_chosen: bool,
     /// Whether it and the chosen pad silence each other.
     is_mate: bool,
@@ -195,11 +239,21 @@ struct Face<'a> {
 impl Face<'_> {
     fn paint(&self, ui: &Ui, rect: Rect, controls: &Controls) {
         let (painter, palette) = (ui.painter(), controls.palette);
-        let (fill, text, muted) = match (self.is_down, self.pad) {
-            (true, Some(_)) => (palette.accent, palette.on_accent, palette.on_accent),
-            (_, Some(_)) => (palette.raised, palette.text, palette.muted),
-            (_, None) => (palette.panel, palette.muted, palette.muted),
+        let is_named_alone = rect.width() < NAMED;
+        let strength = self.sounding.map_or(0.0, |(pad, _)| pad.strength);
+        // A pad that has only a name shows by its face alone that its key is down.
+        let lit = match (self.is_down, is_named_alone) {
+            (true, true) => 1.0,
+            (true, false) => LIT * strength.max(DOWN),
+            (false, _) => LIT * strength,
         };
+        let (fill, text, muted) = match self.pad {
+            Some(_) if lit >= 1.0 => (palette.accent, palette.on_accent, palette.on_accent),
+            Some(_) => (palette.raised.lerp_to_gamma(palette.accent, lit), palette.text, palette.muted),
+            None => (palette.panel, palette.muted, palette.muted),
+        };
+        // On a lit face, the second rank would be too faint.
+        let muted = if lit > 0.0 && lit < 1.0 { palette.text } else { muted };
         let edge = match (self.is_aim || self.is_chosen, self.has_focus, self.is_mate) {
             (_, true, _) => Stroke::new(1.5, palette.text),
             (true, ..) => Stroke::new(1.5, palette.accent),
@@ -207,7 +261,7 @@ impl Face<'_> {
             _ => Stroke::new(1.0, if self.pad.is_some() { palette.outline } else { palette.line }),
         };
         painter.rect(rect, RADIUS, fill, edge, StrokeKind::Inside);
-        if rect.width() < NAMED && self.pad.is_some() {
+        if is_named_alone && self.pad.is_some() {
             paragraph(painter, rect.shrink2(vec2(2.5, 1.0)), self.name, 0.8 * SMALL, text);
             return;
         }
@@ -215,8 +269,13 @@ impl Face<'_> {
         let top = inside.with_max_y(inside.top() + 14.0);
         line(painter, top, Align2::LEFT_CENTER, &note_name(self.key), SMALL, muted);
         if self.group > 0 {
-            let colour = if self.is_down { palette.on_accent } else { palette.text };
-            line(painter, top, Align2::RIGHT_CENTER, &self.group.to_string(), SMALL, colour);
+            let place = Rect::from_center_size(top.right_center() - vec2(RING - 1.0, -1.0), Vec2::splat(2.0 * RING));
+            let colour = if self.is_chosen { palette.on_accent } else { text };
+            match self.is_chosen {
+                true => _ = painter.circle_filled(place.center(), RING, palette.accent),
+                false => _ = painter.circle_stroke(place.center(), RING, Stroke::new(1.0, text)),
+            }
+            line(painter, place, Align2::CENTER_CENTER, &self.group.to_string(), 0.9 * SMALL, colour);
         }
         let Some(pad) = self.pad else {
             let text = fitting(painter, &["Drop a sound here", "Drop here", "empty", ""], SMALL, inside.width());
@@ -237,18 +296,35 @@ impl Face<'_> {
         }
         let picture = Rect::from_min_max(top.left_bottom(), named.right_top()).shrink(2.0);
         if let Some(figure) = self.figure.filter(|_| picture.height() >= 10.0) {
-            let side = vec2(picture.width().min(2.0 * picture.height()), picture.height());
-            face::paint_still(painter, Rect::from_center_size(picture.center(), side), figure, palette);
+            let at = place(picture);
+            paint_glow(painter, picture.expand(4.0), strength, palette);
+            let moved = self.sounding.map_or(Vec::new(), |(pad, shape)| pad.displacements_of(figure, shape, at));
+            let pose = Pose { displacements: &moved, ..Pose::default() };
+            let _ = face::paint(painter, at, figure, &pose, palette);
         }
         // Its level as a bar, and its place between left and right as a dot.
         let split = bar.left() + 0.62 * bar.width();
-        let (level, place) = (bar.with_max_x(split - 4.0), bar.with_min_x(split + 4.0));
-        for groove in [level, place] {
+        let (level, width) = (bar.with_max_x(split - 4.0), bar.with_min_x(split + 4.0));
+        for groove in [level, width] {
             painter.rect_filled(groove, 1.0, palette.line);
         }
         let share = ((pad.gain_db - GAINS[0]) / (GAINS[1] - GAINS[0])).clamp(0.0, 1.0);
-        let colour = if self.is_down { palette.on_accent } else { palette.accent };
-        painter.rect_filled(level.with_max_x(level.left() + share * level.width()), 1.0, colour);
-        painter.circle_filled(place.center() + vec2(0.5 * pad.pan * place.width(), 0.0), 2.5, text);
+        painter.rect_filled(level.with_max_x(level.left() + share * level.width()), 1.0, palette.accent);
+        painter.circle_filled(width.center() + vec2(0.5 * pad.pan * width.width(), 0.0), 2.5, text);
     }
+}
+
+/// Paints a light behind a body that sounds, from 0 to 1.
+pub(super) fn paint_glow(painter: &Painter, rect: Rect, strength: f32, palette: &Palette) {
+    if strength <= 0.01 {
+        return;
+    }
+    let colour = palette.accent.gamma_multiply(0.35 * strength.min(1.0));
+    let vertex = |pos: Pos2, color: Color32| Vertex { pos, uv: WHITE_UV, color };
+    let mut glow = Mesh::default();
+    glow.vertices.push(vertex(rect.center(), colour));
+    let corner = |corner: usize| rect.center() + Vec2::angled(TAU * corner as f32 / CORNERS as f32) * rect.size() / 2.0;
+    glow.vertices.extend((0..CORNERS).map(|place| vertex(corner(place), Color32::TRANSPARENT)));
+    (1..=CORNERS as u32).for_each(|place| glow.add_triangle(0, place, place % CORNERS as u32 + 1));
+    painter.add(glow);
 }

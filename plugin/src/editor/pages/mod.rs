@@ -71,6 +71,11 @@ impl Pages {
         parts::topic(self.part)
     }
 
+    /// Selects a part of the sound's way.
+    pub(super) fn select(&mut self, part: Part) {
+        self.part = part;
+    }
+
     /// Ends the user's action, and releases the held keys.
     pub(super) fn leave(&mut self, controls: &mut Controls) {
         self.body.leave(controls);

@@ -1,24 +1,20 @@
 //! What the body is and what it is made of, each chosen by its picture.
 
 use crate::editor::body::edit::BodyEdit;
-use crate::editor::body::face;
 use crate::editor::body::offer::{TAKES, suggestion};
 use crate::editor::body::origin::OriginShown;
+use crate::editor::body::pick::{Tiles, disc};
 use crate::editor::controls::shown::{Shown, Subject};
 use crate::editor::controls::{Controls, Hint};
-use crate::editor::theme::{GAP, RADIUS, SMALL};
+use crate::editor::theme::{GAP, SMALL};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::line;
 use egui::scroll_area::ScrollBarVisibility;
-use egui::style::ScrollAnimation;
-use egui::{
-    Align2, Id, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2, WidgetInfo,
-    vec2,
-};
+use egui::{Align2, Id, Pos2, Rect, ScrollArea, Sense, Ui, UiBuilder, Vec2, vec2};
 use sprung::sound::bodies::{MATERIALS, Model};
 use sprung_picture::play::{DISCS, MODELS};
-use sprung_picture::{Figure, Origin, model_name, tint};
+use sprung_picture::{Origin, model_name};
 
 /// Columns of tiles, and of discs, where they stand in rows.
 const COLUMNS: [usize; 2] = [3, 5];
@@ -34,7 +30,7 @@ const SPACE: f32 = GAP / 2.0;
 #[derive(Default)]
 pub(super) struct Things {
     read: OriginShown,
-    figures: Vec<Figure>,
+    pictures: Tiles,
     /// The sound whose body and material have been scrolled to.
     scrolled: Option<Subject>,
 }
@@ -53,9 +49,6 @@ impl Things {
         controls: &mut Controls,
     ) -> Option<Result<(), String>> {
         let origin = self.read.get(shown);
-        if self.figures.is_empty() {
-            self.figures = MODELS.iter().map(|(id, _)| Figure::tile(id)).collect();
-        }
         let (changed, what) = self.parts(ui, rect, is_tall, &origin, shown, controls)?;
         Some(BodyEdit::make(&origin, changed, what, shown.loaded(), controls))
     }
@@ -81,10 +74,18 @@ impl Things {
         // A table of modes has no material: to choose one is to make it the body as which it is drawn.
         let (deed, suggested) = suggestion(origin, shown);
         let now = origin.body().map(|body| body.material.id);
-        let figures = &self.figures;
         let is_new = self.scrolled.as_ref() != Some(&shown.subject());
-        let tiles = |ui: &Ui, at: Pos2, size: Vec2, columns: usize, controls: &mut Controls| {
-            bodies(ui, (at, size, columns), (origin, figures), is_new, controls)
+        let mut tiles = |ui: &Ui, corner: Pos2, size: Vec2, columns: usize, controls: &mut Controls| {
+            let mut picked = None;
+            for place in 0..MODELS.len() {
+                let offset = vec2((place % columns) as f32, (place / columns) as f32) * (size + Vec2::splat(SPACE));
+                let tile = Rect::from_min_size(corner + offset, size);
+                let now = (origin.body().map(|body| &body.model), is_new);
+                if let Some(id) = self.pictures.show(ui, tile, place, now, controls) {
+                    picked = Some((origin.with_model(false, Model::find(id)), format!("model {}", model_name(id))));
+                }
+            }
+            picked
         };
         let mut picked = if is_tall {
             line(ui.painter(), next(14.0), Align2::LEFT_CENTER, "What it is", SMALL, palette.muted);
@@ -136,37 +137,6 @@ fn scrolling(ui: &mut Ui, rect: Rect, name: &str, width: f32, show: impl FnOnce(
     .inner
 }
 
-/// Shows the tiles of bodies from a corner on, in so many columns; what is new is scrolled to.
-fn bodies(
-    ui: &Ui,
-    (corner, size, columns): (Pos2, Vec2, usize),
-    (origin, figures): (&Origin, &[Figure]),
-    is_new: bool,
-    controls: &mut Controls,
-) -> Picked {
-    let (palette, now) = (controls.palette, origin.body().map(|body| body.model.id()));
-    let mut picked = None;
-    for (place, ((id, name), figure)) in MODELS.iter().zip(figures).enumerate() {
-        let offset = vec2((place % columns) as f32, (place / columns) as f32) * (size + Vec2::splat(SPACE));
-        let tile = Rect::from_min_size(corner + offset, size);
-        let is_now = now == Some(id);
-        let is_lit = is_now || origin.body().is_some_and(|body| is_kin(&body.model, id));
-        let response = choice(ui, tile, ("thing", name), is_lit, is_new);
-        let face = if is_lit || response.hovered() { palette.raised } else { palette.ground };
-        ui.painter().rect(tile, RADIUS, face, edge(&response, is_lit, controls), StrokeKind::Inside);
-        // A quarter of a pixel lower: edges on the centres of pixels are filled by some graphics drivers and not by others.
-        let picture =
-            tile.with_max_y(tile.bottom() - 15.0).shrink2(vec2(0.13 * size.x, 4.0)).translate(vec2(0.0, 0.25));
-        face::paint_still(ui.painter(), picture, figure, palette);
-        let colour = if is_lit { palette.text } else { palette.muted };
-        line(ui.painter(), tile.with_min_y(tile.bottom() - 16.0), Align2::CENTER_CENTER, name, SMALL, colour);
-        if response.clicked() && !is_now {
-            picked = Some((origin.with_model(false, Model::find(id)), format!("model {}", model_name(id))));
-        }
-    }
-    picked
-}
-
 /// Shows the discs of materials from a corner on, in so many columns, for a body that is `now` of one; what is new is scrolled to.
 fn materials(
     ui: &Ui,
@@ -175,62 +145,16 @@ fn materials(
     is_new: bool,
     controls: &mut Controls,
 ) -> Picked {
-    let palette = controls.palette;
     let mut picked = None;
+    let help = if now.is_some() { "Make it of this material." } else { TAKES };
     for (place, id) in DISCS.into_iter().enumerate() {
-        let offset = vec2((place % columns) as f32 + 0.5, (place / columns) as f32 + 0.5) * pitch;
-        let disc = Rect::from_center_size(corner + offset, vec2(pitch, pitch));
-        let is_now = now == Some(id);
-        let response = choice(ui, disc, ("material", id), is_now, is_new);
-        if response.hovered() {
-            *controls.hint = Hint::new(id, if now.is_some() { "Make it of this material." } else { TAKES });
-        }
-        let radius = 0.36 * pitch;
-        ui.painter().circle(disc.center(), radius, tint(id), Stroke::new(1.0, palette.line));
-        let glint = disc.center() - vec2(0.3, 0.3) * radius;
-        ui.painter().circle_filled(glint, 0.22 * radius, palette.text.gamma_multiply(0.35));
-        if is_now || response.has_focus() {
-            ui.painter().circle_stroke(disc.center(), radius + 2.5, edge(&response, is_now, controls));
-        }
-        if response.clicked() && !is_now {
+        let offset = vec2((place % columns) as f32, (place / columns) as f32) * pitch;
+        let at = Rect::from_min_size(corner + offset, vec2(pitch, pitch));
+        if disc(ui, at, id, (now == Some(id), is_new, help), controls) {
             picked = made_of(origin, id).or(picked);
         }
     }
     picked
-}
-
-/// A picture to click, which is chosen or not.
-fn choice(ui: &Ui, rect: Rect, (kind, name): (&'static str, &str), is_now: bool, is_new: bool) -> Response {
-    let response = ui.interact(rect, Id::unique((kind, name)), Sense::click());
-    // In a row that scrolls, what is chosen or has the focus is to be seen.
-    if is_new && is_now || response.gained_focus() {
-        ui.scroll_to_rect_animation(rect, None, ScrollAnimation::none());
-    }
-    response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_now, format!("{kind}: {name}")));
-    response
-}
-
-fn edge(response: &Response, is_now: bool, controls: &Controls) -> Stroke {
-    let palette = controls.palette;
-    match (response.has_focus(), is_now) {
-        (true, _) => Stroke::new(1.5, palette.text),
-        (false, true) => Stroke::new(1.5, palette.accent),
-        (false, false) => Stroke::new(1.0, palette.outline),
-    }
-}
-
-/// Whether a model has no tile of its own, and that of `id` comes nearest.
-fn is_kin(model: &Model, id: &str) -> bool {
-    let kin = match model {
-        Model::Marimba | Model::Vibraphone | Model::Xylophone | Model::Tine => "free_bar",
-        Model::Timpani(_) => "membrane",
-        Model::Plate { .. } | Model::Bed(_) => "free_plate",
-        Model::Disc { .. } => "free_disc",
-        Model::HandBell => "church_bell",
-        Model::StoppedTube | Model::Cone { .. } | Model::TubularBell => "open_tube",
-        _ => return false,
-    };
-    kin == id
 }
 
 /// The list of all models.

@@ -1,6 +1,6 @@
 //! The program's page of devices and ports.
 
-use super::pictures::{Stage, compare, finish, stage};
+use super::pictures::{Stage, compare, compare_small, finish, stage};
 use crate::devices::{Chosen, Devices, Output};
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use egui::{Key, Role};
@@ -122,5 +122,6 @@ fn pictures_of_devices_are_as_accepted() {
     ] {
         compare(name, &mut page(size, theme).harness);
     }
+    compare_small("devices-high-contrast", 2, &mut page(SIZE, Theme::HighContrast).harness);
     finish();
 }

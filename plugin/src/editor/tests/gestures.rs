@@ -105,7 +105,7 @@ fn shift_is_ten_times_finer() {
 }
 
 /// A turn of the wheel by some lines.
-fn wheel(lines: f32) -> Event {
+pub(super) fn wheel(lines: f32) -> Event {
     Event::MouseWheel {
         unit: MouseWheelUnit::Line,
         delta: vec2(0.0, lines),

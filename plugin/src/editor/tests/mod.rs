@@ -5,6 +5,7 @@ mod auditioning;
 mod body_numbers;
 mod browsing;
 mod carrying;
+mod chosen_pad;
 mod comparing;
 mod devices;
 mod dropped;

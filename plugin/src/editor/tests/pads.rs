@@ -1,6 +1,6 @@
 //! The pads of a kit: they are struck, chosen, dragged, filled, set and emptied.
 
-use super::pictures::{Stage, compare, compare_small, facing, finish};
+use super::pictures::{Stage, compare, compare_small, differing, facing, finish};
 use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::window::Face;
@@ -153,7 +153,7 @@ fn numbers_group_and_output_of_a_pad_are_set_and_the_knobs_stay() {
     assert!(louder.gain_db > before.gain_db + 1.0, "{louder:?}");
     stage.harness.get_by_role_and_label(Role::ComboBox, "Output of the pad").click();
     stage.harness.run_steps(3);
-    stage.button("7");
+    stage.button("7: channels 15–16");
     assert_eq!(stage.pad(42).unwrap().1, Pad { output: 7, ..louder.clone() });
     stage.harness.get_by_role_and_label(Role::ComboBox, "Choke of the pad").click();
     stage.harness.run_steps(3);
@@ -227,4 +227,81 @@ fn a_drag_ends_with_escape_and_nothing_sounds_on_when_another_sound_is_loaded() 
     band.passes(3);
     assert_eq!(band.stage.params.link().telemetry.keys(0), 0);
     band.press(kick, false);
+}
+
+#[test]
+fn a_pad_that_sounds_swings_and_glows_and_comes_to_rest() {
+    let mut band = Band::of(at("Acoustic Kit", SIZE, Theme::Dark));
+    band.passes(3);
+    let pads = ["D2", "C2"].map(|key| {
+        let place = band.stage.place(key) - vec2(50.0, 50.0);
+        [place.x as u32, place.y as u32]
+    });
+    let seen = |band: &mut Band| {
+        let picture = band.stage.harness.render().unwrap();
+        pads.map(|[x, y]| image::imageops::crop_imm(&picture, x, y, 100, 100).to_image())
+    };
+    let rest = seen(&mut band);
+    band.strike(&[38]);
+    band.passes(4);
+    let [snare, kick] = seen(&mut band);
+    assert!(differing(&rest[0], &snare, 4) > 500);
+    assert_eq!(differing(&rest[1], &kick, 4), 0);
+    // Of the one that was struck before, only the light is known.
+    band.strike(&[36]);
+    band.passes(4);
+    let [snare, kick] = seen(&mut band);
+    assert!(differing(&rest[0], &snare, 4) > 500 && differing(&rest[1], &kick, 4) > 500);
+    // With no time between, what still changes is motion.
+    let moves = |band: &mut Band| {
+        let before = seen(band);
+        band.stage.harness.run_steps(4);
+        let after = seen(band);
+        differing(&before[1], &after[1], 4)
+    };
+    assert!(moves(&mut band) > 0);
+    band.stage.params.set_view(|view| view.less_motion = true);
+    band.passes(2);
+    assert_eq!(moves(&mut band), 0);
+    band.silence();
+    band.passes(60);
+    let still = seen(&mut band);
+    assert_eq!([0, 1].map(|pad| differing(&rest[pad], &still[pad], 4)), [0, 0]);
+}
+
+#[test]
+fn octaves_are_gone_to_by_name_and_the_kit_is_named() {
+    let mut stage = at("Acoustic Kit", SIZE, Theme::Dark);
+    assert!(stage.paints(&format!("{} pads", stage.kit().pads.len())));
+    assert_eq!(stage.harness.query_all_by_label("Pad C2 Kick").count(), 1);
+    stage.button("Pads from C4");
+    assert!(stage.harness.query_by_label("Pad C2 Kick").is_none());
+    stage.place("D#5");
+    stage.button("Pads an octave lower");
+    stage.place("C3");
+    // In less room there are fewer, and that which is shown is one of them.
+    let mut stage = at("Acoustic Kit", LEAST_SIZE, Theme::Dark);
+    for _ in 0..4 {
+        stage.button("Pads an octave higher");
+    }
+    stage.harness.get_by_label("Pads from C6");
+    assert!(stage.harness.query_by_label("Pads from C1").is_none());
+}
+
+#[test]
+fn the_sounds_for_pads_are_narrowed_by_chips_and_words() {
+    let mut stage = at("Acoustic Kit", SIZE, Theme::Dark);
+    let is_listed = |stage: &Stage, name: &str| stage.harness.query_by_label(&format!("Put {name}")).is_some();
+    stage.button("Only metal");
+    assert!(!is_listed(&stage, "Kick"));
+    stage.sound("Church Bell");
+    stage.button("Only drums, hats, cymbals and other percussion");
+    assert!(!is_listed(&stage, "Church Bell"));
+    stage.sound("Taiko");
+    stage.button("Clear the search for sounds");
+    assert!(is_listed(&stage, "Kick") && !is_listed(&stage, "init"));
+    stage.button("Only your own sounds");
+    assert!(!is_listed(&stage, "Kick") && stage.paints("None yet"));
+    stage.button("All sounds");
+    assert!(is_listed(&stage, "init"));
 }

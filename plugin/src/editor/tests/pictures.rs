@@ -252,6 +252,25 @@ fn pictures_of_parts_that_are_switched_on_are_as_accepted() {
 }
 
 #[test]
+fn pictures_of_pages_at_other_sizes_and_in_other_colours_are_as_accepted() {
+    for theme in [Theme::Light, Theme::HighContrast] {
+        for (face, sound, page) in [
+            (Face::Play, "Church Bell", "play"),
+            (Face::Kit, "Acoustic Kit", "pads"),
+            (Face::Motion, "Violin", "motion"),
+        ] {
+            let name = format!("{page}-{}-twice", theme.id());
+            compare_small(&name, 6, &mut facing(face, sound, SIZE, 2.0, theme).harness);
+        }
+    }
+    for theme in Theme::ALL {
+        let name = format!("play-bell-{}-least", theme.id());
+        compare_small(&name, 2, &mut facing(Face::Play, "Church Bell", LEAST_SIZE, 1.0, theme).harness);
+    }
+    finish();
+}
+
+#[test]
 fn pictures_are_small() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/pictures");
     let sizes = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().metadata().unwrap().len());

@@ -327,9 +327,13 @@ impl Window {
                 reads = self.motion.show(ui, layout.page(), &self.shown, &mut controls);
             }
             None if self.face == Face::Kit => {
-                let (page, others) = (layout.page(), (down, &mut self.browser));
+                let (page, others) = (layout.page(), (down, &energies[..], &mut self.browser));
                 match self.kit.show(ui, page, &mut self.shown, others, &mut controls) {
                     Some(kit::Request::Edit) => self.face = Face::Sound,
+                    Some(kit::Request::Effects) => {
+                        self.pages.select("Space");
+                        self.face = Face::Sound;
+                    }
                     request => reads = request.is_some(),
                 }
             }

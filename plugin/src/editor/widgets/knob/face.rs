@@ -15,16 +15,16 @@ pub(super) fn around(neutral: f32, position: f32) -> f32 {
 }
 
 /// Contents of a face. Positions are 0 to 1.
-pub(super) struct Face<'a> {
-    pub(super) position: f32,
+pub(crate) struct Face<'a> {
+    pub(crate) position: f32,
     /// Start of the arc: the position of the default.
-    pub(super) origin: f32,
+    pub(crate) origin: f32,
     /// Offset of the position by the host's modulation.
-    pub(super) offset: f32,
+    pub(crate) offset: f32,
     /// The modulation by the sound's routes, and the modulated values in the sounding notes.
-    pub(super) ring: &'a Ring,
-    pub(super) is_hovered: bool,
-    pub(super) is_focused: bool,
+    pub(crate) ring: &'a Ring,
+    pub(crate) is_hovered: bool,
+    pub(crate) is_focused: bool,
 }
 
 /// The direction of a position: from lower left over the top to lower right.
@@ -109,7 +109,7 @@ pub(crate) fn paint_mark(painter: &Painter, centre: Pos2, mark: Option<&Mark>, p
     }
 }
 
-pub(super) fn paint(painter: &Painter, rect: Rect, palette: &Palette, face: &Face) {
+pub(crate) fn paint(painter: &Painter, rect: Rect, palette: &Palette, face: &Face) {
     let (centre, radius) = (rect.center(), rect.width() / 2.0);
     let track = if face.is_hovered { palette.muted.gamma_multiply(0.55) } else { palette.line };
     arc(painter, centre, radius - 2.0, [0.0, 1.0], Stroke::new(3.0, track));

@@ -18,7 +18,7 @@ use face::Face;
 use sprung::params::{ParamInfo, Unit};
 
 /// Mouse movement for the whole travel of a knob, in pixels.
-const TRAVEL: f32 = 220.0;
+pub(super) const TRAVEL: f32 = 220.0;
 /// Share of the travel for one step of the wheel or of an arrow key.
 const STEP: f64 = 0.01;
 /// Seconds for which the pointer rests on a knob before the wheel turns it, where the wheel may be meant to scroll.
@@ -26,7 +26,7 @@ const REST: f32 = 0.25;
 /// How much is left of a knob that cannot take the source that is being dragged.
 pub(super) const CLOSED: f32 = 0.35;
 /// Factor for all movements while Shift is held.
-const FINE: f64 = 0.1;
+pub(super) const FINE: f64 = 0.1;
 
 /// Height of its name, and of its value.
 const LINE: f32 = 13.0;
@@ -208,6 +208,21 @@ fn show_value(
     }
 }
 
+/// Takes what the wheel has turned, in steps, and whether Shift is held: the page must not move as well.
+pub(super) fn take_wheel(ui: &Ui) -> (f64, bool) {
+    ui.input_mut(|input| {
+        input.smooth_scroll_delta = egui::Vec2::ZERO;
+        let mut steps = 0.0;
+        input.events.retain(|event| {
+            let Event::MouseWheel { unit, delta, .. } = event else { return true };
+            let points = if *unit == egui::MouseWheelUnit::Point { 20.0 } else { 1.0 };
+            steps += f64::from(delta.y + delta.x) / points;
+            false
+        });
+        (steps, input.modifiers.shift)
+    })
+}
+
 /// Lets the user turn a parameter by dragging: `travel` pixels turn it from end to end.
 pub(crate) fn drag(ui: &Ui, response: &mut Response, travel: f32, info: &'static ParamInfo, controls: &mut Controls) {
     let index = info.param as usize;
@@ -258,18 +273,7 @@ pub(super) fn wheel(ui: &Ui, response: &Response, info: &'static ParamInfo, cont
     if !response.hovered() || can_scroll && (controls.interaction.is_scrolling || !has_rested()) {
         return;
     }
-    let (steps, fine) = ui.input_mut(|input| {
-        // The page must not move as well.
-        input.smooth_scroll_delta = egui::Vec2::ZERO;
-        let mut steps = 0.0;
-        input.events.retain(|event| {
-            let Event::MouseWheel { unit, delta, .. } = event else { return true };
-            let points = if *unit == egui::MouseWheelUnit::Point { 20.0 } else { 1.0 };
-            steps += f64::from(delta.y + delta.x) / points;
-            false
-        });
-        (steps, input.modifiers.shift)
-    });
+    let (steps, fine) = take_wheel(ui);
     if steps == 0.0 {
         return;
     }
