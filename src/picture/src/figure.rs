@@ -77,6 +77,8 @@ impl Tube {
     }
 }
 
+/// How much wider than a tube its cap is.
+pub(crate) const CAP: f32 = 1.22;
 /// Half the width of the block that holds a tine, how deep it is, and how high.
 pub(crate) const BLOCK: (f32, f32, f32) = (0.2, 0.16, 0.05);
 
@@ -205,13 +207,14 @@ impl Figure {
                 corners.into_iter().flatten().chain(right).collect()
             }
             (_, Build::Tube(tube)) => {
-                let radii = [tube.radius[0], tube.mouth()];
+                let radii = [tube.radius[0] * if tube.has_cap { CAP } else { 1.0 }, tube.mouth()];
                 let end = |(along, radius): (f32, f32)| {
                     [
                         lying([along, radius], 0.0),
                         lying([along, -radius], 0.0),
-                        lying([along, 0.0], radius),
-                        lying([along, 0.0], -radius),
+                        // Highest and lowest as it is seen.
+                        lying([along, -0.48 * radius], 0.88 * radius),
+                        lying([along, 0.48 * radius], -0.88 * radius),
                     ]
                 };
                 ends.into_iter().zip(radii).flat_map(end).collect()

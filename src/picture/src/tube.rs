@@ -1,6 +1,6 @@
 //! Tubes: a round wall, and the open end at the right.
 
-use crate::figure::{Figure, Tube};
+use crate::figure::{CAP, Figure, Tube};
 use crate::light::{Facet, Finish};
 use crate::mesh::{ABOVE, Grid, Mesh, Moved};
 use crate::view::lying;
@@ -46,7 +46,7 @@ pub(crate) fn add_tube(mesh: &mut Mesh, figure: &Figure, tube: &Tube, moved: &Mo
     let finish = figure.finish;
     mesh.add(&wall, |number, facet| finish.seen(facet, moved.glow(number % columns)));
     if tube.has_cap {
-        let wide = 1.22 * tube.radius[0];
+        let wide = CAP * tube.radius[0];
         let cap =
             grid(3, &|column, row| ring([-1.0, -1.0, -0.93][column], [0.0, wide, wide][column], row, moved.by(0)));
         let cap = Grid { lift: 0.05, ..cap };
