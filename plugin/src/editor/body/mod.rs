@@ -6,4 +6,5 @@ pub(super) mod numbers;
 pub(super) mod offer;
 pub(super) mod origin;
 pub(super) mod page;
+pub(super) mod small;
 pub(super) mod view;

@@ -1,16 +1,15 @@
-//! The browser's details of a sound, and the field to save a sound under a name.
+//! What can be done with the loaded sound in the browser: to use it, and to save it under a name.
 
 use super::sounds::Sounds;
 use crate::editor::controls::gestures::touch;
 use crate::editor::controls::{Controls, Hint, Pick, Said};
-use crate::editor::theme::{SMALL, TEXT, TITLE_HEIGHT, font};
+use crate::editor::theme::{SMALL, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
-use crate::editor::widgets::text::{is_entered, line, name_field, paragraph, take_over};
+use crate::editor::widgets::text::{is_entered, line, name_field, take_over};
 use crate::loaded::Loaded;
-use egui::{Align2, Id, Rect, TextEdit, Ui, pos2, vec2};
+use egui::{Align2, Id, Key, Rect, TextEdit, Ui, pos2, vec2};
 use sprung::internals::library::{Library, Listed, check, made_from, tags_to_save};
 use sprung::preset::{Playable, Preset};
-use sprung::units::note_name;
 use std::sync::Arc;
 
 /// What became of a request of the user's.
@@ -91,6 +90,8 @@ pub(super) struct Details {
     about: Option<About>,
     /// Whether the field takes the focus when it is shown next.
     takes_name: bool,
+    /// Whether a field was left by Escape in this pass.
+    pub(super) is_left: bool,
 }
 
 impl Details {
@@ -105,7 +106,12 @@ impl Details {
         self.takes_name = true;
     }
 
-    /// Shows the details of a sound and the buttons for it. `may_compare` says that no search for sounds like one is under way.
+    /// Where the buttons for the sound begin in the column, above the fields that they need.
+    pub(super) fn top(&self, rect: Rect) -> f32 {
+        rect.bottom() - 84.0 - if self.about.is_some() { ABOUT } else { 0.0 }
+    }
+
+    /// Shows the buttons for a sound at the bottom of the column. `may_compare` says that no search for sounds like one is under way.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
@@ -116,42 +122,12 @@ impl Details {
         controls: &mut Controls,
     ) -> Option<Outcome> {
         let palette = controls.palette;
-        let title = rect.with_max_y(rect.top() + TITLE_HEIGHT + 2.0);
+        self.is_left = false;
+        let is_escaped = ui.input(|input| input.key_pressed(Key::Escape));
         let name = controls.params.name();
-        line(ui.painter(), title, Align2::LEFT_CENTER, &name, TEXT + 3.0, palette.text);
         // Undo, or a host, may have brought another sound back.
         if self.of != name {
             self.open(&name);
-        }
-        let mut top = title.bottom() + 4.0;
-        if let Some(sound) = shown {
-            let [keys, macros] = match &sound.playable {
-                Playable::Preset(Preset { guide, .. }) => {
-                    let [lowest, highest, home] = [guide.lowest, guide.highest, guide.home].map(note_name);
-                    let macros = guide.macros.join(", ");
-                    let macros = if macros.is_empty() { macros } else { format!("macros: {macros}") };
-                    [format!("{lowest} to {highest}, best at {home}"), macros]
-                }
-                Playable::Kit(kit) => [format!("kit of {} pads", kit.pads.len()), String::new()],
-            };
-            let author = Some(sound.playable.author()).filter(|author| !author.is_empty());
-            let lines = [
-                sound.tags().join("  "),
-                author.map_or(String::new(), |author| format!("by {author}")),
-                keys,
-                macros,
-                String::new(),
-                sound.playable.comment().to_owned(),
-                sound.playable.details().to_owned(),
-            ];
-            let bottom = rect.bottom() - if self.about.is_some() { 92.0 + ABOUT } else { 92.0 };
-            for text in lines {
-                let place = Rect::from_min_max(pos2(rect.left(), top), pos2(rect.right(), bottom.max(top)));
-                top += paragraph(ui.painter(), place, &text, SMALL + 0.5, palette.muted).max(6.0) + 2.0;
-            }
-        } else {
-            let text = "In no file of yours yet: type a name below and press Enter, and it is kept.";
-            paragraph(ui.painter(), rect.with_min_y(top), text, SMALL + 0.5, palette.muted);
         }
         let mut enters = false;
         // Another sound may have been loaded since, by other ways than this list.
@@ -171,10 +147,21 @@ impl Details {
                 let response = ui.put(place, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
                 name_field(&response, name, text);
                 enters |= is_entered(&response);
+                self.is_left |= is_escaped && response.lost_focus();
             }
         }
-        let raised = if self.about.is_some() { ABOUT } else { 0.0 };
-        let similar = Rect::from_min_size(pos2(rect.left(), rect.bottom() - 84.0 - raised), vec2(rect.width(), 24.0));
+        // Who types a name wants to save.
+        let [use_look, save_look] =
+            if self.about.is_some() { [Look::Plain, Look::Main] } else { [Look::Main, Look::Plain] };
+        let row = Rect::from_min_size(pos2(rect.left(), self.top(rect)), vec2(rect.width(), 24.0));
+        let (uses, similar) = row.split_left_right_at_fraction(0.42);
+        let response = button(ui, uses.with_max_x(uses.right() - 4.0), "Use it", "Use this sound", use_look, palette);
+        if response.hovered() {
+            *controls.hint = Hint::new("Use it", "Keeps this sound and closes the list, as Enter does.");
+        }
+        if response.clicked() {
+            return Some(Outcome { is_stale: false, is_done: true, ..Outcome::of(Ok(String::new())) });
+        }
         let look = if controls.params.is_preset() && may_compare { Look::Plain } else { Look::Disabled };
         if button(ui, similar, "More like this", "Find sounds like this one", look, palette).clicked() {
             return Some(Outcome { compares: true, is_stale: false, ..Outcome::of(Ok(String::new())) });
@@ -194,6 +181,7 @@ impl Details {
             ui.ctx().request_repaint();
         }
         enters |= is_entered(&response);
+        self.is_left |= is_escaped && response.lost_focus();
         let response = button(ui, elsewhere, "…", "Save in another folder", Look::Plain, palette);
         if response.hovered() {
             *controls.hint = Hint::new("Save in another folder", "A copy, in any folder.");
@@ -213,7 +201,7 @@ impl Details {
         let bin = rename.translate(vec2(wide + 4.0, 0.0));
         let own = shown.filter(|sound| sound.path.is_some());
         let text = if self.confirm.is_some() { "Replace" } else { "Save" };
-        let response = button(ui, save, text, "Save under this name", Look::Main, palette);
+        let response = button(ui, save, text, "Save under this name", save_look, palette);
         if response.hovered() {
             let folder = sounds.library.as_ref().map(|library| library.presets_folder().display().to_string());
             *controls.hint = Hint::new("Save", folder.unwrap_or_default());
@@ -240,7 +228,7 @@ impl Details {
     }
 
     /// Renames a file of the user's. The sound stays a favourite, if it is one, and a recent one under the new name.
-    fn rename(&mut self, own: &Listed, library: &Library, controls: &Controls) -> Outcome {
+    fn rename(&mut self, own: &Listed, library: &Library, controls: &mut Controls) -> Outcome {
         let name = self.name.trim().to_owned();
         let Some(path) = &own.path else { return Outcome::of(Err(String::new())) };
         let path = match library.rename(path, &name) {
@@ -259,6 +247,7 @@ impl Details {
         if controls.params.name() == own.name() {
             controls.params.rename(name);
             touch(controls.params, controls.host);
+            controls.history.begin_trial();
         }
         Outcome { is_stale: true, ..Outcome::of(starred.map(|()| format!("renamed {}", path.display()))) }
     }

@@ -4,10 +4,9 @@ use super::sounds::Sounds;
 use crate::editor::body::face;
 use crate::editor::theme::{Palette, RADIUS, SMALL, TEXT};
 use crate::editor::widgets::text::line;
-use crate::editor::widgets::{list, outline};
-use egui::{Align2, Id, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
+use crate::editor::widgets::{list, outline, star};
+use egui::{Align2, EventFilter, Id, Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 use sprung::internals::library::Listed;
-use std::f32::consts::TAU;
 use std::sync::Arc;
 
 /// Height of a line of text.
@@ -46,7 +45,7 @@ impl List<'_> {
         let told = if says.is_empty() { 0.0 } else { ROW };
         line(ui.painter(), rect.with_max_y(rect.top() + ROW), Align2::LEFT_CENTER, says, TEXT, palette.muted);
         let below = rect.with_min_y(rect.top() + told);
-        let tile = TILES[usize::from(rect.height() < LOW)];
+        let tile = tile(rect);
         list::show(ui, below, "sounds", tile, (found.len(), chosen), |ui, place, cell| {
             let sound = &found[place];
             let response = ui.interact(cell.shrink(2.0), row(place), Sense::click());
@@ -54,6 +53,11 @@ impl List<'_> {
             response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_on, sound.name()));
             if response.clicked() {
                 clicked.sound = Some(place);
+            }
+            if response.has_focus() {
+                // They lead along the shelves.
+                let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
+                ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
             }
             if is_on || response.hovered() {
                 ui.painter().rect_filled(response.rect, RADIUS, palette.raised);
@@ -71,8 +75,9 @@ impl List<'_> {
             if sound.path.is_some() {
                 line(ui.painter(), cell.shrink2(vec2(6.0, 4.0)), Align2::LEFT_TOP, "yours", SMALL, palette.muted);
             }
-            let star = Rect::from_min_size(cell.right_top() + vec2(-STAR - 4.0, 4.0), vec2(STAR, STAR));
-            if show_star(ui, star, place, sound.name(), sounds.is_favourite(sound), palette) {
+            let at = Rect::from_min_size(cell.right_top() + vec2(-STAR - 4.0, 4.0), vec2(STAR, STAR));
+            let id = Id::unique(("star", place));
+            if star::show(ui, at, id, sound.name(), sounds.is_favourite(sound), palette).clicked() {
                 clicked.star = Some(place);
             }
         });
@@ -80,33 +85,18 @@ impl List<'_> {
     }
 }
 
+/// Width and height of a sound on its shelf, in a list of this size.
+fn tile(rect: Rect) -> [f32; 2] {
+    TILES[usize::from(rect.height() < LOW)]
+}
+
+/// How many sounds stand on a shelf of a list of this size, and how many shelves are seen at once.
+pub(super) fn shelves(rect: Rect) -> [usize; 2] {
+    let [width, height] = tile(rect);
+    [list::columns(rect, width), ((rect.height() / height) as usize).max(1)]
+}
+
 /// The widget of a sound in the list.
 pub(super) fn row(place: usize) -> Id {
     Id::unique(("sound", place))
-}
-
-/// A star that is filled for favourites. Returns whether it was clicked.
-fn show_star(ui: &Ui, rect: Rect, place: usize, name: &str, is_on: bool, palette: &Palette) -> bool {
-    let response = ui.interact(rect, Id::unique(("star", place)), Sense::click());
-    response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_on, format!("Favourite {name}")));
-    outline(ui, &response, response.rect, 3, palette);
-    let corner = |number: usize| {
-        let radius = if number.is_multiple_of(2) { 6.0 } else { 2.6 };
-        rect.center() + radius * Vec2::angled((number as f32 / 10.0 - 0.25) * TAU)
-    };
-    let colour =
-        if is_on { palette.accent } else { palette.muted.gamma_multiply(if response.hovered() { 1.0 } else { 0.7 }) };
-    let points: Vec<_> = (0..10).map(corner).collect();
-    if is_on {
-        // A star is not convex, but its five points and its centre are.
-        for number in (0..10).step_by(2) {
-            let triangle = vec![points[number], points[(number + 1) % 10], points[(number + 9) % 10]];
-            ui.painter().add(Shape::convex_polygon(triangle, colour, Stroke::NONE));
-        }
-        let middle = points.iter().skip(1).step_by(2).copied().collect();
-        ui.painter().add(Shape::convex_polygon(middle, colour, Stroke::NONE));
-    } else {
-        ui.painter().add(Shape::closed_line(points, Stroke::new(1.0, colour)));
-    }
-    response.clicked()
 }

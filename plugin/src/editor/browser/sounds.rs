@@ -1,6 +1,7 @@
 //! The sounds to choose from: the factory's and the user's own, by family, words and favourites.
 
 use sprung::internals::library::{Catalogue, Library, Listed};
+use sprung::internals::text::counted;
 use sprung::preset::{Family, Playable, Preset};
 use sprung_picture::{Figure, small_figure};
 use std::cell::RefCell;
@@ -49,6 +50,19 @@ impl Category {
                 name[..1].to_uppercase() + &name[1..]
             }
         }
+    }
+
+    /// So many of its sounds, in words: by their name, if they have one of which there can be several.
+    pub(super) fn counted(self, count: usize) -> String {
+        use Family::{Bell, Cymbal, Drone, Effect, HandDrum, Hat, Kick, Lead, Mallet, Pad, Snare, Tom};
+        let noun = match self {
+            Self::Kits => "kit".to_owned(),
+            Self::Family(
+                family @ (Kick | Snare | Tom | Hat | Cymbal | HandDrum | Mallet | Bell | Lead | Pad | Drone | Effect),
+            ) => family.name().replace('_', " "),
+            _ => "sound".to_owned(),
+        };
+        counted(count, &noun)
     }
 
     /// What fills it; for those that are never empty, nothing.

@@ -43,6 +43,16 @@ pub(crate) struct History {
     chosen: Option<String>,
     /// The name of the changed sound in whose place one was loaded, until somebody has looked.
     lost: Option<String>,
+    trial: Trial,
+}
+
+/// What has been done since one began to try sounds.
+#[derive(Default)]
+struct Trial {
+    /// How many steps lead here from what there was then; below zero, how many were undone.
+    steps: isize,
+    /// Whether the last step is a sound that was tried: the next one takes its place.
+    goes_on: bool,
 }
 
 impl History {
@@ -84,16 +94,43 @@ impl History {
 
     /// Loads a sound as one step.
     pub(crate) fn load(&mut self, playable: Playable, params: &SprungParams, host: &GuiContext) {
-        self.begin(params);
         self.note_lost(params);
-        let name = playable.name().to_owned();
+        self.load_as(playable.name().to_owned(), playable, params, host);
+    }
+
+    fn load_as(&mut self, name: String, playable: Playable, params: &SprungParams, host: &GuiContext) {
+        self.begin(params);
+        self.chosen = Some(playable.name().to_owned());
         files::load(playable, params, host);
-        self.chosen = Some(name.clone());
         // In the place of a pad's sound, it is a change of the kit, of which nothing is lost.
         let is_changed = params.pad().is_some();
         self.lost.take_if(|_| is_changed);
         self.end_step(name, false, is_changed, params, |_| true);
         self.is_changed = is_changed;
+    }
+
+    /// Begins to try sounds: what there is now is what [`History::trial`] leads back to.
+    pub(crate) fn begin_trial(&mut self) {
+        self.trial = Trial::default();
+    }
+
+    /// How many steps are to be undone, or below zero to be done again, to come back to what there was when the trial began.
+    pub(crate) fn trial(&self) -> isize {
+        self.trial.steps
+    }
+
+    /// Loads a sound to hear it. Those that are tried in a row are one step, from the sound before them to the last one.
+    pub(crate) fn try_out(&mut self, playable: Playable, params: &SprungParams, host: &GuiContext) {
+        self.note_lost(params);
+        let mut from = params.name();
+        if let Some(step) = self.trial.goes_on.then(|| self.undo.pop()).flatten() {
+            self.trial.steps -= 1;
+            from = step.state.playable.name().to_owned();
+            (self.open, self.is_changed) = (Some(step.state), step.is_changed);
+        }
+        let (steps, name) = (self.trial.steps, format!("{from} → {}", playable.name()));
+        self.load_as(name, playable, params, host);
+        self.trial.goes_on = self.trial.steps > steps;
     }
 
     /// Loads a sound that is in no file yet, as one step of this name.
@@ -126,6 +163,7 @@ impl History {
 
     /// The sound was saved as it is. That of a pad is a part of a kit, which was not.
     pub(crate) fn saved(&mut self, params: &SprungParams) {
+        self.begin_trial();
         if params.pad().is_some() {
             return;
         }
@@ -162,6 +200,7 @@ impl History {
         self.turned = None;
         let is_changed = std::mem::replace(&mut self.is_changed, is_changed);
         self.undo.push(Step { name, state, moved, swaps, is_changed });
+        self.trial = Trial { steps: self.trial.steps.max(0) + 1, goes_on: false };
         self.redo.clear();
         if self.undo.len() > STEPS {
             self.undo.remove(0);
@@ -180,13 +219,15 @@ impl History {
 
     /// Undoes the last step. Returns whether the two versions change places by this.
     pub(crate) fn undo(&mut self, params: &SprungParams, host: &GuiContext) -> bool {
-        self.turned = None;
+        (self.turned, self.trial.goes_on) = (None, false);
+        self.trial.steps -= isize::from(!self.undo.is_empty());
         go([&mut self.undo, &mut self.redo], &mut self.is_changed, params, host)
     }
 
     /// Redoes the step that was undone last. Returns whether the two versions change places by this.
     pub(crate) fn redo(&mut self, params: &SprungParams, host: &GuiContext) -> bool {
-        self.turned = None;
+        (self.turned, self.trial.goes_on) = (None, false);
+        self.trial.steps += isize::from(!self.redo.is_empty());
         go([&mut self.redo, &mut self.undo], &mut self.is_changed, params, host)
     }
 }

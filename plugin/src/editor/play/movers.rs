@@ -2,10 +2,10 @@
 
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::lamps::{Lamp, MOVERS};
-use crate::editor::theme::{GAP, Palette, RADIUS, SMALL, TEXT};
+use crate::editor::theme::{GAP, RADIUS, SMALL, TEXT};
+use crate::editor::widgets::mover;
 use crate::editor::widgets::text::line;
-use egui::{Align2, Color32, Id, Painter, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
-use sprung::params::Param;
+use egui::{Align2, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 
 /// Shows the tiles. Returns whether another exciter acts alone now.
 pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) -> bool {
@@ -40,7 +40,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) 
         let colour = if is_on { palette.accent } else { palette.muted };
         let [wide, edge] = if is_tall { [36.0, 9.0] } else { [28.0, 5.0] };
         let picture = Rect::from_min_size(tile.min, vec2(wide, height)).shrink(edge);
-        paint(ui.painter(), picture, param, colour, palette);
+        mover::paint(ui.painter(), picture, param, colour, palette);
         let text = if is_on || is_hovered { palette.text } else { palette.muted };
         line(ui.painter(), tile.with_min_x(tile.left() + wide + 6.0), Align2::LEFT_CENTER, name, TEXT, text);
         let is_hovered = mover.show(ui, lamp, controls).hovered() || is_hovered;
@@ -63,38 +63,4 @@ fn act_alone(mover: &Lamp, controls: &mut Controls) {
     }
     let values = changed.into_iter().flat_map(|other| other.switched(controls)).collect();
     controls.set_all(format!("{} alone", mover.section), values);
-}
-
-/// A little picture of an exciter.
-fn paint(painter: &Painter, rect: Rect, param: Param, colour: Color32, palette: &Palette) {
-    let stroke = Stroke::new(1.6, colour);
-    let at = |x: f32, y: f32| pos2(rect.left() + x * rect.width(), rect.top() + y * rect.height());
-    match param {
-        Param::MalletLevel => {
-            painter.line_segment([at(0.0, 1.0), at(0.7, 0.3)], stroke);
-            painter.circle_filled(at(0.74, 0.26), 0.2 * rect.height(), colour);
-        }
-        Param::PluckLevel => {
-            painter.add(Shape::line(vec![at(0.15, 0.1), at(0.85, 0.1), at(0.5, 0.75), at(0.15, 0.1)], stroke));
-            painter.line_segment([at(0.0, 0.95), at(1.0, 0.95)], Stroke::new(1.0, palette.muted));
-        }
-        Param::NoiseLevel => {
-            for [x, y] in [[0.1, 0.5], [0.25, 0.2], [0.35, 0.75], [0.5, 0.45], [0.62, 0.15], [0.7, 0.8], [0.9, 0.4]] {
-                painter.circle_filled(at(x, y), 1.6, colour);
-            }
-        }
-        Param::BowLevel => {
-            painter.add(Shape::line(vec![at(0.0, 0.9), at(0.2, 0.45), at(0.6, 0.2), at(1.0, 0.1)], stroke));
-            painter.line_segment([at(0.0, 0.9), at(1.0, 0.1)], Stroke::new(1.0, colour));
-        }
-        Param::BreathLevel => {
-            painter.add(Shape::line(vec![at(1.0, 0.2), at(0.35, 0.2), at(0.0, 0.75), at(1.0, 0.75)], stroke));
-            painter.line_segment([at(0.05, 0.9), at(0.5, 0.9)], Stroke::new(1.0, palette.muted));
-        }
-        _ => {
-            let points =
-                [[0.0, 0.5], [0.2, 0.5], [0.3, 0.1], [0.45, 0.9], [0.6, 0.2], [0.7, 0.6], [0.8, 0.5], [1.0, 0.5]];
-            painter.add(Shape::line(points.map(|[x, y]| at(x, y)).to_vec(), stroke));
-        }
-    }
 }

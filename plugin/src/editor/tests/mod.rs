@@ -1,6 +1,7 @@
 //! The window without a screen: driven by simulated input, compared with pictures.
 
 mod animation;
+mod auditioning;
 mod body_numbers;
 mod browsing;
 mod comparing;

@@ -7,6 +7,11 @@ pub(crate) fn is_near(ui: &Ui, row: Rect) -> bool {
     ui.is_rect_visible(row.expand(4.0 * row.height()))
 }
 
+/// How many cells of this width are beside each other, in as many columns as there is room for.
+pub(crate) fn columns(rect: Rect, width: f32) -> usize {
+    ((rect.width() / width) as usize).max(1)
+}
+
 /// Shows the cells of a list by rows, in as many columns of this width as there is room for; `to` is one to scroll to.
 pub(crate) fn show(
     ui: &mut Ui,
@@ -16,7 +21,7 @@ pub(crate) fn show(
     (count, to): (usize, Option<usize>),
     mut cell: impl FnMut(&Ui, usize, Rect),
 ) {
-    let columns = ((rect.width() / width) as usize).max(1);
+    let columns = columns(rect, width);
     let mut inner = ui.new_child(UiBuilder::new().id_salt(name).max_rect(rect));
     ScrollArea::vertical().id_salt(name).auto_shrink(false).show(&mut inner, |ui| {
         let size = vec2(ui.available_width() / columns as f32, height);

@@ -5,8 +5,10 @@ pub(super) mod carried;
 pub(super) mod choice;
 pub(super) mod knob;
 pub(super) mod list;
+pub(super) mod mover;
 pub(super) mod number;
 pub(super) mod progress;
+pub(super) mod star;
 pub(super) mod text;
 mod typing;
 

@@ -1,20 +1,29 @@
 //! The top of the window: the sound's name, the buttons for it, and its level.
 
 use super::meter;
-use super::variation::{self, VariationRequest};
+use super::variation::{self, Variation, VariationRequest};
+use crate::editor::body::face;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::host::extent;
 use crate::editor::routes::carry;
 use crate::editor::theme::{BRAND, GAP, SMALL, TEXT, Theme, ZOOMS};
 use crate::editor::widgets::buttons::{Look, button, tab};
+use crate::editor::widgets::star;
 use crate::editor::widgets::text::{line, width};
 use crate::state::View;
-use egui::{Align2, Id, Popup, PopupCloseBehavior, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Id, Popup, PopupCloseBehavior, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use nice_plug_core::context::PluginApi;
+use sprung_picture::Figure;
 use std::collections::BTreeSet;
 
 /// Width of the button that puts a sound back to its pad.
 const PUT: f32 = 58.0;
+/// Widths of the body before the name, of the star behind its tags, and of the dice.
+const BODY: f32 = 28.0;
+const STAR: f32 = 20.0;
+const DICE: f32 = 30.0;
+/// Least width of a window that has dice.
+const LEAST_WIDTH_WITH_DICE: f32 = 1000.0;
 
 /// What the window shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,6 +56,10 @@ pub(super) enum Request {
     Step(isize),
     /// Put the sound back to its pad.
     PutBack,
+    /// Close the browser, and bring back what there was before sounds were tried.
+    GiveUp,
+    /// Make the sound a favourite, or no favourite any more.
+    Star,
     Browse,
     Save,
     Undo,
@@ -70,6 +83,9 @@ pub(super) enum Request {
 pub(super) struct Header<'a> {
     pub(super) name: &'a str,
     pub(super) words: &'a str,
+    /// The sound's body.
+    pub(super) figure: &'a Figure,
+    pub(super) is_favourite: bool,
     /// The pad from which the sound was taken, in words.
     pub(super) pad: Option<&'a str>,
     pub(super) is_changed: bool,
@@ -158,6 +174,9 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
         (copies, copy_name, shrunk(46.0), Look::Plain, Request::Copy, copy_help),
     ];
     for (text, name, width, look, wanted, help) in buttons {
+        if wanted == Request::Swap && rect.width() >= LEAST_WIDTH_WITH_DICE {
+            request = dice(ui, next(DICE), header, controls).or(request);
+        }
         let response = button(ui, next(width), text, name, look, palette);
         if response.hovered() {
             let title = match wanted {
@@ -212,23 +231,59 @@ fn name_field(ui: &Ui, rect: Rect, header: &Header, is_narrow: bool, controls: &
             request = Some(Request::PutBack);
         }
     }
-    if button(ui, previous, "‹", "Previous sound", Look::Plain, palette).clicked() {
-        request = Some(Request::Step(-1));
-    }
-    if button(ui, following, "›", "Next sound", Look::Plain, palette).clicked() {
-        request = Some(Request::Step(1));
+    for (place, text, name, by) in [(previous, "‹", "Previous", -1), (following, "›", "Next", 1)] {
+        let step = button(ui, place, text, &format!("{name} sound"), Look::Plain, palette);
+        if step.hovered() {
+            *controls.hint = Hint::new(name, "Of those that Browse lists: of a family, with some words, or with tags.");
+        }
+        request = step.clicked().then_some(Request::Step(by)).or(request);
     }
     if response.hovered() {
         *controls.hint = Hint::new(header.name, format!("{}   right click: randomise, mutate, locks", header.words));
     }
     let name = format!("{}{}", header.name, if header.is_changed { " *" } else { "" });
-    let room = if header.pad.is_some() { inside.with_max_x(put.left() - 4.0) } else { inside };
+    let mut room = if header.pad.is_some() { inside.with_max_x(put.left() - 4.0) } else { inside };
+    if !is_narrow {
+        let body = room.with_max_x(room.left() + BODY).shrink2(vec2(0.0, 4.0));
+        face::paint_still(ui.painter(), body, header.figure, palette);
+        room.min.x = body.right() + 6.0;
+    }
+    if !is_narrow && header.pad.is_none() {
+        let at = room.with_min_x(room.right() - STAR);
+        let star = star::show(ui, at, Id::unique("star"), "the loaded sound", header.is_favourite, palette);
+        if star.hovered() {
+            *controls.hint = Hint::new("Favourite", "Keeps this sound among your favourites.");
+        }
+        request = star.clicked().then_some(Request::Star).or(request);
+        room.max.x = at.left() - 2.0;
+    }
     let name = line(ui.painter(), room, Align2::LEFT_CENTER, &name, TEXT + 1.5, palette.text);
     if !is_narrow {
         let rest = room.with_min_x(name.right() + 12.0);
         line(ui.painter(), rest, Align2::RIGHT_CENTER, header.pad.unwrap_or(header.words), SMALL, palette.muted);
     }
     request
+}
+
+/// The dice: a click rolls another sound, a right click opens the menu of variations and locks.
+fn dice(ui: &Ui, rect: Rect, header: &Header, controls: &mut Controls) -> Option<Request> {
+    let palette = controls.palette;
+    let response = button(ui, rect, "", "Roll the dice", Look::Plain, palette);
+    let at = Rect::from_center_size(rect.center(), vec2(15.0, 15.0));
+    let stroke = Stroke::new(1.2, palette.text);
+    ui.painter().rect_stroke(at, 3.0, stroke, StrokeKind::Inside);
+    for [x, y] in [[-1.0, -1.0], [1.0, -1.0], [0.0, 0.0], [-1.0, 1.0], [1.0, 1.0]] {
+        ui.painter().circle_filled(at.center() + 3.4 * vec2(x, y), 1.2, palette.text);
+    }
+    if response.hovered() {
+        let help = "Takes each part from another sound, but for what is locked.   right click: mutate a little, locks";
+        *controls.hint = Hint::new("Randomise", help);
+    }
+    let mut request = None;
+    let menu = Popup::context_menu(&response).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    menu.show(|ui| request = variation::menu(ui, header.locked));
+    let rolls = response.clicked().then_some(VariationRequest::Vary(Variation::Randomise));
+    rolls.or(request).map(Request::Variation)
 }
 
 /// The menu of scales, as far as the smallest window at them fits on the screen, themes, motion, and pages about the window itself.

@@ -12,7 +12,8 @@ mod variation;
 mod versions;
 
 use crate::editor::binding;
-use crate::editor::browser::Browser;
+use crate::editor::body::small::Small;
+use crate::editor::browser::{self, Browser};
 use crate::editor::controls::history::History;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, FRAME, Interaction, Said};
@@ -38,7 +39,7 @@ use crate::editor::theme::{Theme, install_fonts};
 use crate::link::joined;
 use crate::lock::lock;
 use crate::params::SprungParams;
-use egui::{Event, Key, Ui};
+use egui::{Event, Key, Popup, Ui};
 pub(super) use header::Face;
 use header::{Header, Request};
 use meter::Meter;
@@ -79,6 +80,7 @@ pub(super) struct Window {
     interaction: Interaction,
     history: History,
     shown: Shown,
+    small: Small,
     browser: Browser,
     modes: ModesView,
     displays: Displays,
@@ -147,6 +149,7 @@ impl Window {
             interaction: Interaction::default(),
             history,
             shown,
+            small: Small::default(),
             browser: Browser::new(library),
             modes: ModesView::default(),
             displays: Displays::default(),
@@ -198,7 +201,7 @@ impl Window {
 
     /// Shows the window, over the theme's ground, and carries out the user's requests.
     pub(super) fn contents(&mut self, ui: &mut Ui, host: &GuiContext) {
-        let params = self.params.clone();
+        let (params, over) = (self.params.clone(), self.over);
         let view = params.view();
         if self.applied.is_none() {
             install_fonts(ui.ctx());
@@ -244,9 +247,13 @@ impl Window {
             seconds,
             notes: &notes,
         };
+        // What is open over the page, or typed there, takes Escape for itself.
+        let is_busy = Popup::is_any_open(ui.ctx()) || controls.interaction.typing.is_some();
         let header = Header {
             name: &name,
             words: &self.shown.words(),
+            figure: self.small.get(&self.shown),
+            is_favourite: self.browser.is_favourite(&name),
             pad: pad.as_deref(),
             is_changed: controls.history.is_changed(),
             is_browsing: self.over == Some(Over::Browser),
@@ -277,13 +284,10 @@ impl Window {
         if seen != Some(Face::Motion) {
             self.motion.leave();
         }
-        if seen.is_none() {
-            controls.interaction.typing = None;
-        }
         let (mut reads, mut picked) = (false, Vec::new());
         match self.over {
             Some(Over::Browser) => {
-                if let Some((message, is_done)) = self.browser.show(ui, layout.page(), &mut controls) {
+                if let Some((message, is_done)) = self.browser.show(ui, layout.page(), &self.shown, &mut controls) {
                     self.news = Some(message);
                     self.over = self.over.filter(|_| !is_done);
                     if self.browser.is_stale() {
@@ -344,7 +348,10 @@ impl Window {
             self.manual.open(topic(self.over, self.face, &self.pages));
             self.over = Some(Over::Manual);
         }
-        if ui.input(|input| input.key_pressed(Key::Escape)) {
+        let is_escaped = ui.input(|input| input.key_pressed(Key::Escape)) && !is_busy;
+        let gives_up = (is_escaped && self.over == Some(Over::Browser)).then_some(Request::GiveUp);
+        let gives_up = gives_up.filter(|_| !self.browser.takes_escape());
+        if is_escaped && self.over != Some(Over::Browser) {
             self.over = if matches!(self.over, Some(Over::Files)) { self.under } else { None };
         }
         if let Some(pick) = controls.interaction.pick.take() {
@@ -406,15 +413,22 @@ impl Window {
         let load = self.load.share(now, telemetry, sample_rate);
         let engine = status::engine(voices, load, sample_rate);
         let waits = self.interaction.learning.is_some() || self.interaction.binding.is_some();
-        let has_stayed = self.line.show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
+        // In a host, keys come here only while something has the focus.
+        let has_keys = self.over == Some(Over::Browser) && (is_alone || is_typing);
+        let rest = if has_keys { browser::KEYS } else { "" };
+        let has_stayed = self.line.show(ui, layout.status, (hint.as_ref(), rest), &message, &engine, palette);
         if has_stayed && !waits {
             self.message = Ok(String::new());
             // It is still painted.
             ui.ctx().request_repaint();
         }
         let by_program = || params.link().devices.is_wanted().then_some(Request::Devices);
-        if let Some(request) = request.or(by_key).or_else(by_program) {
+        if let Some(request) = request.or(gives_up).or(by_key).or_else(by_program) {
             self.carry_out(request, ui, host);
+        }
+        if self.over != over {
+            // The knob into which one types has gone with its page.
+            self.interaction.typing = None;
         }
         if let Some(message) = self.history.take_lost() {
             self.news = Some(Ok(message));

@@ -12,17 +12,21 @@ use crate::params::SprungParams;
 use crate::state::View;
 use egui::Ui;
 use nice_plug_core::context::gui::GuiContext;
-use sprung::preset::{Playable, Preset};
+use sprung::preset::Playable;
 
 impl Window {
-    /// Loads the factory sound at this distance in the list.
-    fn step(&mut self, places: isize, host: &GuiContext) {
-        let (all, name) = (Preset::factory(), self.params.name());
-        // From a sound that is not in the list, the next is its first and the one before its last.
-        let place = all.iter().position(|preset| preset.name == name).map(|place| place as isize);
-        let place = place.unwrap_or(if places > 0 { -1 } else { 0 }) + places;
-        let preset = all[place.rem_euclid(all.len() as isize) as usize].clone();
-        self.history.load(Playable::Preset(preset), &self.params, host);
+    /// Brings back what there was before sounds were tried.
+    fn give_up(&mut self, host: &GuiContext) {
+        if self.history.trial() == 0 {
+            return;
+        }
+        while self.history.trial() > 0 && self.history.undo_name().is_some() {
+            self.go_back(History::undo, host, None);
+        }
+        while self.history.trial() < 0 && self.history.redo_name().is_some() {
+            self.go_back(History::redo, host, None);
+        }
+        self.news = Some(Ok(format!("‘{}’ is back as it was", self.params.name())));
     }
 
     /// Replaces the sound by a random variation.
@@ -67,7 +71,14 @@ impl Window {
                     self.kit.choose(key);
                 }
             }
+            Request::GiveUp => {
+                self.over = None;
+                self.give_up(host);
+            }
             Request::Browse | Request::Save => {
+                if self.over != Some(Over::Browser) {
+                    self.history.begin_trial();
+                }
                 let closes = self.over == Some(Over::Browser) && request == Request::Browse;
                 self.over = (!closes).then_some(Over::Browser);
                 self.news = Some(Ok(String::new()));
@@ -93,7 +104,14 @@ impl Window {
             Request::Devices => self.over = Some(Over::Devices),
             Request::Theme(theme) => self.params.set_view(|view| view.theme = theme),
             Request::LessMotion(less) => self.params.set_view(|view| view.less_motion = less),
-            Request::Step(places) => self.step(places, host),
+            Request::Star => {
+                let message = self.browser.turn_favourite(&self.params.name());
+                self.news = Some(message.map_or(Ok(String::new()), Err));
+            }
+            Request::Step(places) => {
+                let is_open = self.over == Some(Over::Browser);
+                self.browser.step(ui, places, (&mut self.history, &self.params, host), is_open);
+            }
             Request::Swap => self.versions.swap(&mut self.history, &self.params, host),
             Request::Variation(VariationRequest::Lock(section)) => {
                 if !self.locked.remove(section) {

@@ -82,12 +82,12 @@ impl StatusLine {
         self.since = None;
     }
 
-    /// Shows the line. Returns whether the message has stayed long enough.
+    /// Shows the line, with `rest` where there is nothing else to say. Returns whether the message has stayed long enough.
     pub(super) fn show(
         &mut self,
         ui: &Ui,
         rect: Rect,
-        hint: Option<&Hint>,
+        (hint, rest): (Option<&Hint>, &str),
         message: &Said,
         right: &str,
         palette: &Palette,
@@ -100,7 +100,7 @@ impl StatusLine {
             self.is_unread = !text_of(message).is_empty();
         }
         let hint = hint.filter(|_| !self.is_unread);
-        paint(ui, rect, hint, message, right, palette);
+        paint(ui, rect, (hint, rest), message, right, palette);
         if let Some(hint) = hint {
             show_tooltip(ui, hint);
         }
@@ -143,7 +143,7 @@ fn text_of(message: &Said) -> &str {
 }
 
 /// Paints the line.
-fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, said: &Said, right: &str, palette: &Palette) {
+fn paint(ui: &Ui, rect: Rect, (hint, rest): (Option<&Hint>, &str), said: &Said, right: &str, palette: &Palette) {
     let (painter, message) = (ui.painter(), text_of(said));
     let right_width = width(painter, right, SMALL);
     line(painter, rect, Align2::RIGHT_CENTER, right, SMALL, palette.muted);
@@ -161,6 +161,9 @@ fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, said: &Said, right: &str, pal
             let title = line(painter, left, Align2::LEFT_CENTER, title, SMALL, palette.text);
             let rest = Rect::from_min_max(pos2(title.right() + TITLE_GAP, left.top()), left.max);
             line(painter, rest, Align2::LEFT_CENTER, help, SMALL, palette.muted);
+        }
+        None if message.is_empty() => {
+            line(painter, left, Align2::LEFT_CENTER, rest, SMALL, palette.muted);
         }
         None => {
             // The colour of warnings is for what went wrong.
@@ -199,8 +202,8 @@ mod tests {
         let context = egui::Context::default();
         for (said, colour) in [(Ok("saved"), palette.text), (Err("refused"), palette.warning)] {
             let said = said.map(str::to_owned).map_err(str::to_owned);
-            let mut output =
-                context.run_ui(egui::RawInput::default(), |ui| paint(ui, ui.max_rect(), None, &said, "", palette));
+            let mut output = context
+                .run_ui(egui::RawInput::default(), |ui| paint(ui, ui.max_rect(), (None, ""), &said, "", palette));
             let words = text_of(&said);
             let is_it = |shape: &egui::epaint::ClippedShape| matches!(&shape.shape, egui::Shape::Text(text) if text.galley.text() == words && text.fallback_color == colour);
             assert!(output.shapes.iter().any(is_it), "{words}");
@@ -216,7 +219,7 @@ mod tests {
         let has_stayed = |line: &mut StatusLine, said: &Said, time: f64| {
             let mut stayed = false;
             let input = egui::RawInput { time: Some(time), ..Default::default() };
-            let show = |ui: &mut Ui| stayed = line.show(ui, ui.max_rect(), None, said, "", palette);
+            let show = |ui: &mut Ui| stayed = line.show(ui, ui.max_rect(), (None, ""), said, "", palette);
             context.run_ui(input, show).textures_delta.clear();
             stayed
         };
