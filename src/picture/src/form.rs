@@ -208,7 +208,9 @@ impl Form {
         match self {
             Self::Line => 0.39 * rect.height() / self.scale(rect).0,
             Self::Rod => 0.2,
-            Self::Round | Self::Cymbal | Self::Gong | Self::Plate { .. } => 0.28,
+            Self::Round | Self::Plate { .. } => 0.28,
+            // More would bend a stiff disc out of all recognition.
+            Self::Cymbal | Self::Gong => 0.14,
             Self::Bell | Self::HandBell | Self::Bowl => 0.16,
             Self::Glass => 0.1,
         }

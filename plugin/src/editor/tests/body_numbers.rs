@@ -1,6 +1,6 @@
 //! The page of the body, and the first five minutes of a user who is new to the window.
 
-use super::pictures::{Stage, compare_page, finish, stage};
+use super::pictures::{Stage, compare_part, finish, stage};
 use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
@@ -42,7 +42,7 @@ fn pictures_of_the_page_are_as_accepted() {
         let mut stage = stage(sound, size, 1.0, theme);
         stage.tab("Model");
         stage.button(part);
-        compare_page(name, &mut stage.harness);
+        compare_part(name, &mut stage.harness);
     }
     finish();
 }
@@ -150,7 +150,7 @@ fn the_first_five_minutes() {
     stage.harness.run_steps(3);
     stage.harness.get_by_role_and_label(Role::ListItem, "Marimba").click();
     stage.harness.run_steps(3);
-    stage.harness.key_press(Key::Escape);
+    stage.harness.key_press(Key::Enter);
     stage.harness.run_steps(3);
     assert_eq!((stage.params.name().as_str(), stage.origin()), ("Marimba", Origin::Table));
 
@@ -172,7 +172,7 @@ fn the_first_five_minutes() {
     stage.harness.event(Event::Text(" in a glass hall".to_owned()));
     stage.harness.run_steps(3);
     stage.button("Save under this name");
-    stage.harness.key_press(Key::Escape);
+    stage.harness.key_press(Key::Enter);
     stage.harness.run_steps(2);
     let edited = stage.params.state();
 

@@ -1,7 +1,7 @@
 //! The moving pictures: the body is struck elsewhere, the mass is pulled and released.
 
 use super::fake_host::Call;
-use super::pictures::{compare, differing, facing, finish};
+use super::pictures::{compare_part, differing, facing, finish};
 use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::window::Face;
@@ -53,7 +53,7 @@ fn pictures_of_bodies_are_as_accepted() {
         band.show_body();
         band.strike(&[60]);
         band.passes(20);
-        compare(name, &mut band.stage.harness);
+        compare_part(name, &mut band.stage.harness);
     }
     finish();
 }
@@ -89,7 +89,7 @@ fn a_body_is_heard_where_the_ear_is_dragged_and_a_click_leaves_it_there() {
     let mut band = Band::of(facing(Face::Play, "Opera Gong", SIZE, 1.0, Theme::Dark));
     let before = band.stage.params.state();
     let (rect, [struck, _]) = (band.rect("Struck body"), band.places());
-    let place = |x, y| Form::Round.on(rect, Point { x, y }, 0.0);
+    let place = |x, y| Form::Gong.on(rect, Point { x, y }, 0.0);
     let ear = band.rect("Ear").center();
     band.press(ear + vec2(3.0, 2.0), true);
     band.press(ear + vec2(3.0, 2.0), false);

@@ -65,7 +65,10 @@ fn pictures_of_the_pads_are_as_accepted() {
         band.press(hat, false);
         band.strike(&[38]);
         band.passes(2);
-        compare(name, &mut band.stage.harness);
+        match theme {
+            Theme::Dark => compare(name, &mut band.stage.harness),
+            _ => compare_small(name, 2, &mut band.stage.harness),
+        }
     }
     for theme in [Theme::Light, Theme::HighContrast] {
         compare_small(&format!("pads-{}", theme.id()), 2, &mut at("Acoustic Kit", SIZE, theme).harness);

@@ -2,7 +2,7 @@
 
 use super::dropped::{Dropped, asset};
 use super::fake_host::Call;
-use super::pictures::{Stage, compare, compare_page, finish, stage};
+use super::pictures::{Stage, compare, compare_part, finish, stage};
 use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use egui::{Key, Role, vec2};
@@ -36,7 +36,7 @@ fn pictures_of_tuning_voices_and_manual_are_as_accepted() {
         band.open(page);
         band.strike(&[42, 60]);
         band.passes(4);
-        compare_page(name, &mut band.stage.harness);
+        compare_part(name, &mut band.stage.harness);
     }
     for (size, theme, name) in [(SIZE, Theme::Dark, "manual"), (LEAST_SIZE, Theme::Dark, "manual-least")] {
         let mut stage = stage("Marimba", size, 1.0, theme);

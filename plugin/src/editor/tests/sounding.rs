@@ -1,6 +1,6 @@
 //! A window with a playing engine: the audio thread's work is done between the window's passes.
 
-use super::pictures::{Stage, compare, compare_small, finish, stage};
+use super::pictures::{Stage, compare, compare_part, compare_small, finish, stage};
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, vec2};
@@ -166,13 +166,13 @@ fn pictures_of_a_struck_bell_are_as_accepted() {
     band.passes(3);
     band.strike(&[48, 52]);
     band.passes(6);
-    compare("scope", &mut band.stage.harness);
+    compare_part("scope", &mut band.stage.harness);
     let mut band = Band::new("Church Bell", SIZE, Theme::Light);
     band.stage.harness.get_by_label("Ringing").click();
     band.passes(3);
     band.strike(&[60]);
     band.passes(150);
-    compare("ringing", &mut band.stage.harness);
+    compare_part("ringing", &mut band.stage.harness);
     finish();
 }
 
