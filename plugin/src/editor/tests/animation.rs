@@ -12,11 +12,11 @@ use std::io::{BufReader, BufWriter};
 
 const PLACE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/bell.png");
 /// Frames of the animation, frames per second, and passes of the window per frame.
-const FRAMES: usize = 44;
-const PER_SECOND: usize = 15;
+const FRAMES: usize = 28;
+const PER_SECOND: usize = 10;
 const PASSES: usize = 60 / PER_SECOND;
 /// The frame at which the second key is struck.
-const SECOND: usize = 15;
+const SECOND: usize = 10;
 /// Largest size of the file.
 const MOST_BYTES: u64 = 1_500_000;
 
