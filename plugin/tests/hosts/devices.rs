@@ -14,8 +14,8 @@ pcm.broken { type hw
  description \"Broken\" } }
 ";
 /// Positions of the menu, of its *Devices*, and of the field *Output*.
-const MENU: [i16; 2] = [900, 23];
-const DEVICES: [i16; 2] = [905, 335];
+const MENU: [i16; 2] = [935, 23];
+const DEVICES: [i16; 2] = [940, 335];
 const FIELD: [i16; 2] = [280, 74];
 /// Possible positions of the lines of the field's list: the column, and the rows from the first line to the last.
 const LIST: i16 = 150;

@@ -12,7 +12,7 @@ const BROWSE: [i16; 2] = [613, 23];
 const SAVE: [i16; 2] = [668, 23];
 /// The tab *Sound*: a new window shows *Play*.
 const SOUND: [i16; 2] = [158, 23];
-const FIRST_SOUND: [i16; 2] = [200, 150];
+const FIRST_SOUND: [i16; 2] = [200, 205];
 const MODEL_TAB: [i16; 2] = [346, 274];
 const MODEL: [i16; 2] = [213, 323];
 const MATERIAL: [i16; 2] = [213, 348];

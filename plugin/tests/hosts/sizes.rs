@@ -23,10 +23,10 @@ const SMALL: [u32; 2] = [640, 400];
 /// Size of a new window.
 const NEW: [u32; 2] = [1_100, 700];
 /// The button of the menu in a new window, and entries of it.
-const VIEW: [i16; 2] = [900, 23];
-const ENTRY_100: [i16; 2] = [941, 78];
-const ENTRY_150: [i16; 2] = [941, 124];
-const ENTRY_200: [i16; 2] = [941, 170];
+const VIEW: [i16; 2] = [935, 23];
+const ENTRY_100: [i16; 2] = [976, 78];
+const ENTRY_150: [i16; 2] = [976, 124];
+const ENTRY_200: [i16; 2] = [976, 170];
 /// Blue, green and red of the ground behind the panels.
 const GROUND: [u8; 3] = [26, 20, 20];
 /// The space around the panels, and the corner by which the window is resized, at 100 %.

@@ -23,7 +23,7 @@ mod view;
 pub use figure::{Drum, Figure};
 pub use form::Form;
 pub use light::tint;
-pub use origin::{Origin, model_name};
+pub use origin::{Origin, model_name, with_article};
 pub use picture::{Ink, Picture, Pose};
 pub use shape::{BodyShape, or_suggested, small_figure, suggested_body};
 pub use swing::Swing;

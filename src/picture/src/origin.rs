@@ -152,6 +152,12 @@ pub fn model_name(id: &str) -> String {
     id.replace('_', " ")
 }
 
+/// A name after its article.
+pub fn with_article(name: &str) -> String {
+    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    format!("{article} {name}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,7 +2,7 @@
 
 use crate::figure::Figure;
 use crate::nodal;
-use crate::origin::{Origin, model_name};
+use crate::origin::{Origin, model_name, with_article};
 use crate::second::first_place;
 use emath::{Pos2, Rect};
 use sprung::internals::library::tagged_material;
@@ -97,7 +97,7 @@ impl BodyShape {
             Origin::Table => {
                 let body = suggested_body(family, tags);
                 let what = if is_mass { "a mass" } else { "a table of modes" };
-                let caption = format!("{what}, drawn as a {}", model_name(body.model.id()));
+                let caption = format!("{what}, drawn as {}", with_article(&model_name(body.model.id())));
                 (body, NEAR[1], caption)
             }
         };

@@ -75,10 +75,9 @@ export function paint(context, numbers, gold) {
     context.fillStyle = context.strokeStyle = `rgb(${next()} ${next()} ${next()})`;
     context.fill(), context.stroke();
   }
+  const inks = INKS.map(([ink, ...look]) => [ink === "string" ? gold : colour(ink), ...look]);
   for (let lines = next(); lines > 0; lines--) {
-    const [ink, width, strength] = INKS[next()];
-    context.strokeStyle = ink === "string" ? gold : colour(ink);
-    [context.lineWidth, context.globalAlpha] = [width, strength];
+    [context.strokeStyle, context.lineWidth, context.globalAlpha] = inks[next()];
     trace(next()), context.stroke();
   }
   context.globalAlpha = 1;

@@ -69,7 +69,9 @@ impl Handle {
             Form::Bell | Form::HandBell => (from.x, round),
             Form::Bowl | Form::Glass => (from.x - down, round),
         };
-        self.confined(Point { x: x.clamp(0.0, 1.0), y: y.clamp(0.0, 1.0) }, shape)
+        // On a string that has no body, the place is counted from the nearer end.
+        let most = if shape.origin.body().is_some() { 1.0 } else { 0.5 };
+        self.confined(Point { x: x.clamp(0.0, most), y: y.clamp(0.0, 1.0) }, shape)
     }
 
     /// Where it is, in words.

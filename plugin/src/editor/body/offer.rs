@@ -7,7 +7,7 @@ use crate::editor::theme::{GAP, SMALL};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::paragraph;
 use egui::{Rect, Shape, Ui};
-use sprung_picture::{Origin, model_name, or_suggested, suggested_body};
+use sprung_picture::{Origin, model_name, or_suggested, suggested_body, with_article};
 
 /// What comes of a body for a table of modes.
 pub(crate) const TAKES: &str = "A body of it takes the place of the table of modes.";
@@ -30,9 +30,8 @@ pub(crate) fn offer(
 /// What is done to make a table of modes the body as which it is drawn, and that body; another origin stays as it is.
 pub(crate) fn suggestion(origin: &Origin, shown: &Shown) -> (String, Origin) {
     let suggested = suggested_body(shown.family(), shown.tags());
-    let name = model_name(suggested.model.id());
-    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-    (format!("Make it {article} {name}"), or_suggested(origin, shown.family(), shown.tags()))
+    let name = with_article(&model_name(suggested.model.id()));
+    (format!("Make it {name}"), or_suggested(origin, shown.family(), shown.tags()))
 }
 
 /// Says that a kit's sounds have bodies of their own, and offers to edit the pad that is shown.

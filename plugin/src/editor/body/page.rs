@@ -4,7 +4,7 @@ use super::edit::BodyEdit;
 use super::numbers::{GROUPS, Number, Part};
 use super::offer::{TAKES, offer, offer_pad, suggestion};
 use super::origin::OriginShown;
-use super::pick::{Tiles, disc};
+use super::pick::{BETWEEN, Tiles, discs};
 use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
@@ -14,7 +14,7 @@ use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::number;
 use crate::editor::widgets::text::{line, paragraph};
 use crate::link::Link;
-use egui::{Align2, Id, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, Id, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use sprung::internals::editor::LINK_KINDS;
 use sprung::sound::bodies::{MATERIALS, Model};
 use sprung_picture::play::{DISCS, MODELS};
@@ -94,13 +94,13 @@ impl BodyPage {
         shown: &Shown,
         controls: &mut Controls,
     ) -> (f32, Option<String>) {
+        let (now, link) = (ui.input(|input| input.time), controls.params.link());
+        self.audition.follow_time(now, link);
+        self.audition.request_end(ui);
         let end = rect.top() + TILES[0] + LINE_OF_DISCS;
         if shown.preset().is_none() || rect.bottom() - end < below {
             return (rect.top(), None);
         }
-        let (now, link) = (ui.input(|input| input.time), controls.params.link());
-        self.audition.follow_time(now, link);
-        self.audition.request_end(ui);
         let origin = self.read.get(shown);
         let picked = self.things(ui, rect, (TILES[0], Part::First), &origin, shown, controls);
         (end, picked.and_then(|picked| self.make(ui, &origin, picked, shown, controls)))
@@ -120,29 +120,27 @@ impl BodyPage {
         let (body, mut picked) = (part.body(origin), None);
         let rows = if height > TILES[0] { 2 } else { 1 };
         let columns = MODELS.len().div_ceil(rows);
-        let size = vec2(rect.width() / columns as f32, height / rows as f32);
-        for place in 0..MODELS.len() {
-            let offset = vec2((place % columns) as f32, (place / columns) as f32) * size;
-            let tile = Rect::from_min_size(rect.min + offset, size - vec2(4.0, 4.0));
-            if let Some(id) = self.tiles.show(ui, tile, place, (body.map(|body| &body.model), false), controls) {
-                let changed = origin.with_model(part == Part::Second, Model::find(id));
-                picked = Some((changed, format!("model {}", model_name(id))));
-            }
+        let size = vec2(rect.width() / columns as f32, height / rows as f32) - Vec2::splat(BETWEEN);
+        let now = (body.map(|body| &body.model), false);
+        if let Some(id) = self.tiles.show_all(ui, (rect.min, size, columns), now, controls) {
+            let changed = origin.with_model(part == Part::Second, Model::find(id));
+            picked = Some((changed, format!("model {}", model_name(id))));
+        }
+        if part != Part::First && body.is_none() {
+            return picked;
         }
         let size = vec2(rect.width() / DISCS.len() as f32, LINE_OF_DISCS);
         // A table of modes has no material: to choose one is to make it the body as which it is drawn.
         let mut made = if part == Part::First { suggestion(origin, shown).1 } else { origin.clone() };
         let help = if body.is_some() { "Make it of this material." } else { TAKES };
-        for (place, id) in DISCS.into_iter().enumerate() {
-            let at = Rect::from_min_size(rect.min + vec2(place as f32 * size.x, height), size);
-            let is_now = body.is_some_and(|body| body.material.id == id);
-            if disc(ui, at, id, (is_now, false, help), controls)
-                && let Some(material) = MATERIALS.iter().find(|material| material.id == id)
-                && let Some(body) = part.body_mut(&mut made)
-            {
-                body.material = *material;
-                picked = Some((made.clone(), format!("material {id}")));
-            }
+        let now = (body.map(|body| body.material.id), false, help);
+        let corner = rect.min + vec2(0.0, height);
+        if let Some(id) = discs(ui, (corner, size, DISCS.len()), now, controls)
+            && let Some(material) = MATERIALS.iter().find(|material| material.id == id)
+            && let Some(body) = part.body_mut(&mut made)
+        {
+            body.material = *material;
+            picked = Some((made, format!("material {id}")));
         }
         picked
     }

@@ -5,22 +5,41 @@ use crate::editor::controls::{Controls, Hint};
 use crate::editor::theme::{RADIUS, SMALL};
 use crate::editor::widgets::text::line;
 use egui::style::ScrollAnimation;
-use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
+use egui::{Align2, Color32, Id, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 use sprung::sound::bodies::Model;
-use sprung_picture::play::MODELS;
+use sprung_picture::play::{DISCS, MODELS};
 use sprung_picture::{Figure, tint};
 
 /// Height of a tile from which on it has a name.
 const NAMED: f32 = 40.0;
+/// Space between tiles.
+pub(crate) const BETWEEN: f32 = 4.0;
 
 /// The figures of the tiles.
 #[derive(Default)]
 pub(crate) struct Tiles(Vec<Figure>);
 
 impl Tiles {
+    /// Shows all tiles from a corner on, of this size and in so many columns, as [`Tiles::show`] does each.
+    pub(crate) fn show_all(
+        &mut self,
+        ui: &Ui,
+        (corner, size, columns): (Pos2, Vec2, usize),
+        now: (Option<&Model>, bool),
+        controls: &mut Controls,
+    ) -> Option<&'static str> {
+        let mut picked = None;
+        for place in 0..MODELS.len() {
+            let offset = vec2((place % columns) as f32, (place / columns) as f32) * (size + Vec2::splat(BETWEEN));
+            let tile = Rect::from_min_size(corner + offset, size);
+            picked = self.show(ui, tile, place, now, controls).or(picked);
+        }
+        picked
+    }
+
     /// Shows the tile at this place among them, lit for the model of a body, and scrolled to if that `is_new`. Returns the model's id if
     /// another is clicked.
-    pub(crate) fn show(
+    fn show(
         &mut self,
         ui: &Ui,
         rect: Rect,
@@ -34,7 +53,7 @@ impl Tiles {
         let (palette, (id, name)) = (controls.palette, MODELS[place]);
         let is_now = now.is_some_and(|model| model.id() == id);
         let is_lit = is_now || now.is_some_and(|model| is_kin(model, id));
-        let response = choice(ui, rect, ("thing", name), is_lit, is_new);
+        let response = choice(ui, rect, ("body", name), is_lit, is_new);
         if response.hovered() {
             *controls.hint = Hint::new(name, "Make the body this.");
         }
@@ -53,15 +72,28 @@ impl Tiles {
     }
 }
 
+/// Shows the discs of all materials from a corner on, in places of this size and in so many columns, as [`disc`] does each. Returns the
+/// material that is chosen.
+pub(crate) fn discs(
+    ui: &Ui,
+    (corner, size, columns): (Pos2, Vec2, usize),
+    (now, is_new, help): (Option<&str>, bool, &str),
+    controls: &mut Controls,
+) -> Option<&'static str> {
+    let mut picked = None;
+    for (place, id) in DISCS.into_iter().enumerate() {
+        let offset = vec2((place % columns) as f32, (place / columns) as f32) * size;
+        let at = Rect::from_min_size(corner + offset, size);
+        if disc(ui, at, id, (now == Some(id), is_new, help), controls) {
+            picked = Some(id);
+        }
+    }
+    picked
+}
+
 /// Shows the disc of a material, scrolled to if it `is_now` that of the body and that `is_new`; `help` is what choosing it does. Returns
 /// whether it is chosen and was not.
-pub(crate) fn disc(
-    ui: &Ui,
-    rect: Rect,
-    id: &str,
-    (is_now, is_new, help): (bool, bool, &str),
-    controls: &mut Controls,
-) -> bool {
+fn disc(ui: &Ui, rect: Rect, id: &str, (is_now, is_new, help): (bool, bool, &str), controls: &mut Controls) -> bool {
     let palette = controls.palette;
     let response = choice(ui, rect, ("material", id), is_now, is_new);
     if response.hovered() {
@@ -70,7 +102,7 @@ pub(crate) fn disc(
     let radius = 0.36 * rect.width().min(rect.height());
     ui.painter().circle(rect.center(), radius, tint(id), Stroke::new(1.0, palette.line));
     let light = rect.center() - vec2(0.3, 0.3) * radius;
-    ui.painter().circle_filled(light, 0.22 * radius, palette.text.gamma_multiply(0.35));
+    ui.painter().circle_filled(light, 0.22 * radius, tint(id).lerp_to_gamma(Color32::WHITE, 0.5));
     if is_now || response.has_focus() {
         ui.painter().circle_stroke(rect.center(), radius + 2.5, edge(&response, is_now, controls));
     }

@@ -120,7 +120,8 @@ impl BodyView {
             face::paint_guess(painter, bounds, palette);
         }
         if is_stage {
-            tool::paint(painter, place, figure.form, strike, controls);
+            let inside = painter.with_clip_rect(rect.intersect(painter.clip_rect()));
+            tool::paint(&inside, place, figure.form, strike, controls);
         }
         // What listens stands still beside what moves.
         let heard = ear.map(|ear| figure.form.on(place, ear, 0.0));

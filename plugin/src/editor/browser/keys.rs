@@ -89,7 +89,8 @@ pub(super) fn asked(ui: &Ui, search: Id, words: &str, count: usize) -> Option<Co
         Some(_) => Focus::Other,
     };
     let (modifiers, is_open) = (ui.input(|input| input.modifiers), Popup::is_any_open(ui.ctx()));
-    if focus == Focus::Other || modifiers.any() || is_open {
+    // A knob that is held is that of the loaded sound.
+    if focus == Focus::Other || modifiers.any() || is_open || ui.input(|input| input.pointer.any_down()) {
         return None;
     }
     let pressed = |key| ui.input(|input| input.key_pressed(key));

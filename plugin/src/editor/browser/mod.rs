@@ -67,6 +67,8 @@ pub(super) struct Browser {
     audition: Audition,
     /// What it was opened for.
     aim: Aim,
+    /// The words for which a sound has been tried, or with which it was opened: Enter keeps what is loaded.
+    tried: Option<String>,
 }
 
 impl Browser {
@@ -82,6 +84,7 @@ impl Browser {
             details: Details::default(),
             audition: Audition::default(),
             aim: Aim::Find,
+            tried: None,
         }
     }
 
@@ -103,12 +106,13 @@ impl Browser {
     /// Prepares for being shown, with the name of the loaded sound: for finding another one, or for saving this one.
     pub(super) fn open(&mut self, name: &str, aim: Aim) {
         self.details.open(name);
-        self.aim = aim;
+        // Words from the last time ask for nothing.
+        (self.aim, self.tried) = (aim, Some(self.finding.words.clone()));
         match aim {
             Aim::Find => self.finding.searches = true,
             Aim::Save => self.details.take_name(),
         }
-        self.sounds = None;
+        self.forget();
     }
 
     /// All sounds, read if they may have changed.
@@ -174,7 +178,11 @@ impl Browser {
             Some(Command::Again) => self.play(ui, &controls.params.state().playable, controls.params),
             Some(Command::Keep) if self.finding.words.ends_with(".toml") => message = Some(self.load_file(controls)),
             // The first of what was looked for, if that has not been tried: Enter again keeps it.
-            Some(Command::Keep) if focused.is_none() && place.is_none() && !self.finding.words.is_empty() => {
+            Some(Command::Keep)
+                if focused.is_none()
+                    && !self.finding.words.is_empty()
+                    && (place.is_none() || self.tried.as_ref() != Some(&self.finding.words)) =>
+            {
                 chosen = (!found.is_empty()).then_some(0);
                 ui.memory_mut(|memory| memory.request_focus(search_field()));
             }
@@ -184,7 +192,13 @@ impl Browser {
         let list = List { found: &found, present: &present, chosen, says: &says };
         let clicked = list.show(ui, rows, &sounds, palette);
         let mut starred = clicked.star.and_then(|place| found.get(place).cloned());
-        if let Some(sound) = chosen.or(clicked.sound).filter(|_| !is_kept).and_then(|place| found.get(place)) {
+        // By a key, a sound that is loaded is only played again: a click brings it back as it was.
+        let is_again =
+            clicked.sound.is_some() && clicked.sound == place && !ui.input(|input| input.pointer.any_click());
+        if is_again && !is_kept {
+            self.play(ui, &controls.params.state().playable, controls.params);
+        } else if let Some(sound) = chosen.or(clicked.sound).filter(|_| !is_kept).and_then(|place| found.get(place)) {
+            self.tried = Some(self.finding.words.clone());
             controls.release();
             self.details.open(sound.name());
             controls.history.try_out(sound.playable.clone(), controls.params, controls.host);
@@ -219,7 +233,10 @@ impl Browser {
             sounds.broken.first().map(|first| format!("{} of your files cannot be read: {first}", sounds.broken.len()));
         let is_told = std::mem::replace(&mut self.told, broken.clone()) == broken;
         let broken = broken.filter(|_| !is_told);
-        self.sounds = (!is_stale).then_some(sounds);
+        self.sounds = Some(sounds);
+        if is_stale {
+            self.forget();
+        }
         if is_kept {
             return Some((message.unwrap_or(Ok(String::new())), true));
         }
@@ -277,6 +294,7 @@ impl Browser {
         let playable = read(self.finding.words.trim()).map_err(|error| error.to_string())?;
         self.details.open(playable.name());
         controls.history.try_out(playable, controls.params, controls.host);
-        Ok(format!("loaded {}", self.finding.words.trim()))
+        // So that Enter again keeps it.
+        Ok(format!("loaded {}", std::mem::take(&mut self.finding.words).trim()))
     }
 }

@@ -68,7 +68,7 @@ impl Category {
     /// What fills it; for those that are never empty, nothing.
     pub(in crate::editor) fn invitation(self) -> &'static str {
         match self {
-            Self::Favourites => "None yet: a click on the star before a name keeps the sound here.",
+            Self::Favourites => "None yet: a click on a sound’s star keeps it here.",
             Self::Recent => "None yet: the sounds that you load will be here, the last one first.",
             Self::Own => "None yet: Save keeps the present sound here, Import brings in files.",
             _ => "",

@@ -4,7 +4,7 @@ use crate::editor::theme::{Palette, SMALL, TEXT};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::{line, width};
 use egui::scroll_area::ScrollBarVisibility;
-use egui::{Align2, Id, Rect, ScrollArea, Sense, Stroke, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, Color32, Id, Rect, ScrollArea, Sense, Stroke, Ui, UiBuilder, pos2, vec2};
 use sprung::internals::library::{Listed, MOODS, tagged_material};
 use sprung_picture::tint;
 use std::collections::BTreeMap;
@@ -158,7 +158,7 @@ fn show_tag(ui: &Ui, rect: Rect, tag: &str, look: Look, palette: &Palette) -> bo
     let response = button(ui, rect, "", &format!("Only {tag}"), look, palette);
     let centre = pos2(rect.left() + 6.0 + 0.5 * DISC, rect.center().y);
     ui.painter().circle(centre, 5.5, tint(material), Stroke::new(1.0, palette.line));
-    ui.painter().circle_filled(centre - vec2(1.6, 1.6), 1.3, palette.text.gamma_multiply(0.35));
+    ui.painter().circle_filled(centre - vec2(1.6, 1.6), 1.3, tint(material).lerp_to_gamma(Color32::WHITE, 0.5));
     let colour = if look == Look::On { palette.on_accent } else { palette.text };
     let text = rect.with_min_x(centre.x + 0.5 * DISC + 1.0);
     line(ui.painter(), text, Align2::LEFT_CENTER, tag, TEXT, colour);

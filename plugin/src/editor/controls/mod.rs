@@ -124,6 +124,13 @@ pub(super) struct Interaction {
     pub(super) switched_off: HashMap<(String, &'static str), Vec<(Param, f32)>>,
 }
 
+impl Interaction {
+    /// Whether a field or a lesson waits for the user, and takes Escape for itself.
+    pub(super) fn waits(&self) -> bool {
+        self.typing.is_some() || self.naming.is_some() || self.learning.is_some() || self.binding.is_some()
+    }
+}
+
 /// The text of the status line about the thing under the pointer.
 pub(super) struct Hint {
     pub(super) title: String,

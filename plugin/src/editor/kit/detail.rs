@@ -216,7 +216,8 @@ impl Detail {
         }
         let Some(turn) = &mut self.turning else { return };
         turn.write(time, controls);
-        let is_left = !is_held && ui.input(|input| input.pointer.any_pressed());
+        // Nor may an undo come between.
+        let is_left = !is_held && ui.input(|input| input.pointer.any_pressed() || input.modifiers.command);
         match turn.rest(time, is_held).filter(|_| !is_left) {
             Some(rest) if rest.is_finite() => ui.ctx().request_repaint_after_secs(rest as f32),
             Some(_) => {}

@@ -25,7 +25,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, about: &About, controls: &mut Controls) 
         line(ui.painter(), rect, Align2::LEFT_CENTER, text, SMALL, palette.muted);
         return None;
     }
-    let columns = (rect.width() / LEAST) as usize;
+    let columns = ((rect.width() / LEAST) as usize).max(2);
     let size = vec2(rect.width() / columns as f32, rect.height());
     let cell = |place: usize| Rect::from_min_size(rect.min + vec2(place as f32 * size.x, 0.0), size);
     let seen = if mates.len() > columns { columns - 1 } else { mates.len() };

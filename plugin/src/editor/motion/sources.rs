@@ -86,7 +86,8 @@ fn chip_width(ui: &Ui, (source, name): (Source, &str), shown: &Shown) -> f32 {
 
 /// Shows these sources in a line, as many as there is room for, with what to do with them before; the last ends at the right.
 pub(in crate::editor) fn show_line(ui: &Ui, rect: Rect, sources: &[Source], shown: &Shown, controls: &mut Controls) {
-    let mut left = rect.left() + width(ui.painter(), DRAG, SMALL) + 3.0 * SPACE;
+    let title = if shown.preset().is_some() { DRAG } else { "the sounds have them" };
+    let mut left = rect.left() + width(ui.painter(), title, SMALL) + 3.0 * SPACE;
     let mut places = Vec::new();
     for source in sources {
         let name = name(*source, shown);
@@ -99,7 +100,7 @@ pub(in crate::editor) fn show_line(ui: &Ui, rect: Rect, sources: &[Source], show
     }
     let Some((.., last)) = places.last() else { return };
     let by = vec2(rect.right() - last.right(), 0.0);
-    line(ui.painter(), rect.translate(by), Align2::LEFT_CENTER, DRAG, SMALL, controls.palette.muted);
+    line(ui.painter(), rect.translate(by), Align2::LEFT_CENTER, title, SMALL, controls.palette.muted);
     for (source, name, place) in &places {
         show_source(ui, place.translate(by), (*source, name), None, shown, controls);
     }
@@ -171,7 +172,9 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, chosen: Source, shown: &Shown, contr
         for (source, name, place) in places {
             let place = place.translate(offset);
             let knob = macro_of(source);
-            if knob.is_some_and(|info| naming::field(ui, place, info, controls)) {
+            // Where the macros are chosen, it is typed at the knob.
+            let is_here = section_of(chosen) != Some("Macros");
+            if is_here && knob.is_some_and(|info| naming::field(ui, place, info, controls)) {
                 continue;
             }
             let response = show_source(ui, place, (source, name), Some(source == chosen), shown, controls);

@@ -36,7 +36,8 @@ pub(super) fn show(ui: &Ui, rect: Rect, align: Align2, routes: &Routes, controls
     let [long, short] = [true, false].map(said);
     // Bend and pedal do what they do in every sound.
     let moved = short[..CONTROLLERS.len() - 1].iter().flatten().count();
-    if moved == 0 {
+    let is_bent = routes.iter().any(|(place, route)| route.source == Source::Bend && amount(place) != 0.0);
+    if moved == 0 && !is_bent {
         line(ui.painter(), rect, align, NOTHING, SMALL, controls.palette.muted);
         return;
     }

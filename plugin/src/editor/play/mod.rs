@@ -19,8 +19,9 @@ use crate::link::Link;
 use egui::{Align2, Rect, Sense, Ui, vec2};
 use stage::Floor;
 
-/// The smallest height of a page with titles and tiles: 330 for the tiles of bodies and materials, and the rest for knobs and gaps.
-const TALL: f32 = 472.0;
+/// The smallest height of a page with titles and tiles: 354 for those of bodies and materials with the button below them, 22 for the foot,
+/// and the rest for knobs and gaps.
+const TALL: f32 = 519.0;
 /// Width of the columns beside the body, on a page that is tall and on one that is not.
 const SIDES: [[f32; 2]; 2] = [[126.0, 170.0], [100.0, 130.0]];
 /// Width of a knob's face on a page that is tall: half as wide again as elsewhere, since hands go there first.

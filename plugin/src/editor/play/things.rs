@@ -3,10 +3,10 @@
 use crate::editor::body::edit::BodyEdit;
 use crate::editor::body::offer::{TAKES, suggestion};
 use crate::editor::body::origin::OriginShown;
-use crate::editor::body::pick::{Tiles, disc};
+use crate::editor::body::pick::{BETWEEN, Tiles, discs};
 use crate::editor::controls::shown::{Shown, Subject};
 use crate::editor::controls::{Controls, Hint};
-use crate::editor::theme::{GAP, SMALL};
+use crate::editor::theme::SMALL;
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::line;
@@ -24,7 +24,7 @@ const TILE: Vec2 = vec2(36.0, 42.0);
 const DISC: f32 = 24.0;
 /// Height of a list, and the space between parts.
 const LIST: f32 = 20.0;
-const SPACE: f32 = GAP / 2.0;
+const SPACE: f32 = BETWEEN;
 
 /// The state of the column.
 #[derive(Default)]
@@ -70,22 +70,20 @@ impl Things {
             top += height + SPACE;
             place
         };
-        let [columns, discs] = COLUMNS;
+        let [columns, columns_of_discs] = COLUMNS;
         // A table of modes has no material: to choose one is to make it the body as which it is drawn.
         let (deed, suggested) = suggestion(origin, shown);
         let now = origin.body().map(|body| body.material.id);
         let is_new = self.scrolled.as_ref() != Some(&shown.subject());
         let mut tiles = |ui: &Ui, corner: Pos2, size: Vec2, columns: usize, controls: &mut Controls| {
-            let mut picked = None;
-            for place in 0..MODELS.len() {
-                let offset = vec2((place % columns) as f32, (place / columns) as f32) * (size + Vec2::splat(SPACE));
-                let tile = Rect::from_min_size(corner + offset, size);
-                let now = (origin.body().map(|body| &body.model), is_new);
-                if let Some(id) = self.pictures.show(ui, tile, place, now, controls) {
-                    picked = Some((origin.with_model(false, Model::find(id)), format!("model {}", model_name(id))));
-                }
-            }
-            picked
+            let now = (origin.body().map(|body| &body.model), is_new);
+            let id = self.pictures.show_all(ui, (corner, size, columns), now, controls)?;
+            Some((origin.with_model(false, Model::find(id)), format!("model {}", model_name(id))))
+        };
+        let help = if now.is_some() { "Make it of this material." } else { TAKES };
+        let materials = |ui: &Ui, corner: Pos2, pitch: f32, columns: usize, controls: &mut Controls| {
+            let id = discs(ui, (corner, Vec2::splat(pitch), columns), (now, is_new, help), controls)?;
+            made_of(&suggested, id)
         };
         let mut picked = if is_tall {
             line(ui.painter(), next(14.0), Align2::LEFT_CENTER, "What it is", SMALL, palette.muted);
@@ -112,13 +110,11 @@ impl Things {
             }
         }
         let chosen = if is_tall {
-            let pitch = rect.width() / discs as f32;
-            materials(ui, (next(2.0 * pitch).min, pitch, discs), (now, &suggested), is_new, controls)
+            let pitch = rect.width() / columns_of_discs as f32;
+            materials(ui, next(2.0 * pitch).min, pitch, columns_of_discs, controls)
         } else {
             let width = DISCS.len() as f32 * DISC;
-            scrolling(ui, next(DISC), "materials", width, |ui, at| {
-                materials(ui, (at, DISC, DISCS.len()), (now, &suggested), is_new, controls)
-            })
+            scrolling(ui, next(DISC), "materials", width, |ui, at| materials(ui, at, DISC, DISCS.len(), controls))
         };
         self.scrolled = Some(shown.subject());
         material_field(ui, next(LIST), now, &suggested, controls).or(chosen).or(picked)
@@ -135,26 +131,6 @@ fn scrolling(ui: &mut Ui, rect: Rect, name: &str, width: f32, show: impl FnOnce(
         show(ui, area.min)
     })
     .inner
-}
-
-/// Shows the discs of materials from a corner on, in so many columns, for a body that is `now` of one; what is new is scrolled to.
-fn materials(
-    ui: &Ui,
-    (corner, pitch, columns): (Pos2, f32, usize),
-    (now, origin): (Option<&str>, &Origin),
-    is_new: bool,
-    controls: &mut Controls,
-) -> Picked {
-    let mut picked = None;
-    let help = if now.is_some() { "Make it of this material." } else { TAKES };
-    for (place, id) in DISCS.into_iter().enumerate() {
-        let offset = vec2((place % columns) as f32, (place / columns) as f32) * pitch;
-        let at = Rect::from_min_size(corner + offset, vec2(pitch, pitch));
-        if disc(ui, at, id, (now == Some(id), is_new, help), controls) {
-            picked = made_of(origin, id).or(picked);
-        }
-    }
-    picked
 }
 
 /// The list of all models.

@@ -131,7 +131,7 @@ impl Held {
 fn take(source: Source, info: &'static ParamInfo, at: Pos2, controls: &mut Controls) -> Option<Held> {
     let Playable::Preset(preset) = controls.params.state().playable else { return None };
     let route = Route::linear(source, info.param);
-    let old = preset.patch.routes.iter().find(|(_, old)| *old == route);
+    let old = preset.patch.routes.iter().find(|(_, old)| Route { response: route.response, ..*old } == route);
     let place = old.map(|(place, _)| place).or(free_place(&preset.patch.routes))?;
     let amount = amount_param(place).info();
     let before = (controls.value(amount), controls.position(amount));

@@ -169,7 +169,10 @@ pub(super) fn show(ui: &mut Ui, parts: &Parts, text: &mut String, (patch, guide,
         Some((route, amount)) => {
             let scale = route.scale.map_or(String::new(), |scale| format!(" times {}", source_name(scale, guide)));
             let [source, target] = [source_name(route.source, guide), route.destination.info().name.to_owned()];
-            Ok(format!("{source}{scale} {} {target} by {amount} %", verbs(&route, amount)[0]))
+            let verb = verbs(&route, amount)[0];
+            // To lower by less than nothing would be to raise.
+            let by = if verb == "lowers" { amount.abs() } else { amount };
+            Ok(format!("{source}{scale} {verb} {target} by {by} %"))
         }
         None if sentence.is_some() => Err("which knob, or which source?".to_owned()),
         None => Err(format!("no source and no knob begin like ‘{}’", text.trim())),

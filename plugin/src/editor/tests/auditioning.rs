@@ -270,6 +270,11 @@ fn what_moves_a_sound_is_shown_its_macros_turn_and_its_details_open() {
     stage.type_text("50");
     stage.press_key(Key::Escape);
     assert!(stage.is_browsing() && macro1(&stage) < 0.2);
+    stage.harness.get_by_role_and_label(Role::Slider, "Macro 1").click_secondary();
+    stage.harness.run_steps(3);
+    stage.button("Name Macro 1");
+    stage.press_key(Key::Escape);
+    assert!(stage.is_browsing(), "nor does a name that is given up close it");
     stage.press_key(Key::Escape);
     assert!(!stage.is_browsing() && stage.params.state() == before);
     stage.button("Browse");

@@ -63,7 +63,9 @@ fn a_search_without_a_result_shows_the_nearest_three_which_can_be_loaded() {
     stage.button("Clear the search");
     stage.type_text("rhodes");
     assert!(stage.harness.query_by_role_and_label(Role::ListItem, "Electric Piano 1").is_some());
-    for (category, says) in [("Favourites", "None yet: a click on the star"), ("Your own", "None yet: Save keeps")] {
+    for (category, says) in
+        [("Favourites", "None yet: a click on a sound’s star"), ("Your own", "None yet: Save keeps")]
+    {
         stage.button(&format!("Show {category}"));
         assert!(stage.paints(says) && stage.listed() == 0, "{category}");
     }

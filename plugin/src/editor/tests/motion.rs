@@ -261,4 +261,10 @@ fn a_macro_is_named_in_its_place_and_the_name_is_one_step() {
     name(&mut stage, " ", Key::Enter);
     assert_eq!(names(&stage)[0], "");
     stage.harness.get_by_role_and_label(Role::Button, "Source macro 1");
+    // With the macros chosen, whose knobs have names too, each letter is typed once.
+    stage.harness.get_by_role_and_label(Role::Button, "Source macro 6").click();
+    stage.harness.run_steps(3);
+    stage.harness.get_by_role_and_label(Role::Button, "Source macro 6").click_secondary();
+    name(&mut stage, "Air", Key::Enter);
+    assert_eq!(names(&stage)[5], "Air");
 }

@@ -129,7 +129,7 @@ fn a_click_within_one_pass_and_a_kit_sound_too() {
 fn another_body_and_another_material_are_heard_and_undone_one_by_one() {
     let mut band = playing("Church Bell");
     let [bell, _] = band.thing();
-    band.click(Role::RadioButton, "thing: Glass");
+    band.click(Role::RadioButton, "body: Glass");
     let [glass, material] = band.thing();
     assert_eq!((glass, band.strikes()), ("glass", 1));
     band.click(Role::RadioButton, "material: steel");
@@ -150,7 +150,7 @@ fn a_table_of_modes_says_what_it_lacks_and_becomes_the_body_that_is_offered() {
         band.rect("Struck body");
         assert!(band.stage.harness.query_by_label("Make it a marimba").is_none());
         if size == SIZE {
-            let tile = band.stage.harness.get_by_role_and_label(Role::RadioButton, "thing: Bar");
+            let tile = band.stage.harness.get_by_role_and_label(Role::RadioButton, "body: Bar");
             assert_eq!(tile.accesskit_node().toggled(), Some(Toggled::True), "it is lit for what has none of its own");
         }
         band.undo();
@@ -318,8 +318,8 @@ fn a_small_window_has_pictures_of_bodies_and_materials_and_sources_to_drag() {
         let place = band.rect(name).x_range();
         within.contains(place.min) && within.contains(place.max)
     };
-    assert!(is_seen(&band, "thing: Bell", bodies) && is_seen(&band, "material: bronze", materials));
-    for (name, key) in [("thing: Bowl", Key::Enter), ("material: nylon", Key::Space)] {
+    assert!(is_seen(&band, "body: Bell", bodies) && is_seen(&band, "material: bronze", materials));
+    for (name, key) in [("body: Bowl", Key::Enter), ("material: nylon", Key::Space)] {
         assert!(!is_seen(&band, name, bodies), "{name} is farther to the right");
         band.stage.harness.get_by_role_and_label(Role::RadioButton, name).focus();
         band.passes(3);
@@ -331,7 +331,7 @@ fn a_small_window_has_pictures_of_bodies_and_materials_and_sources_to_drag() {
     assert_eq!(band.thing(), ["bowl", "nylon"]);
     band.undo();
     band.undo();
-    assert!(is_seen(&band, "thing: Bell", bodies), "what comes back is seen");
+    assert!(is_seen(&band, "body: Bell", bodies), "what comes back is seen");
 }
 
 #[test]
@@ -402,7 +402,7 @@ fn the_floor_is_the_space_and_the_tabs_lead_to_all_of_the_sound_and_back() {
     for _ in 0..60 {
         band.stage.harness.key_press_modifiers(Modifiers::NONE, Key::Tab);
         band.passes(1);
-        if band.stage.harness.get_by_role_and_label(Role::RadioButton, "thing: Gong").is_focused() {
+        if band.stage.harness.get_by_role_and_label(Role::RadioButton, "body: Gong").is_focused() {
             return;
         }
     }

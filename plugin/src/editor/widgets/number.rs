@@ -76,7 +76,11 @@ impl Number<'_> {
         let (palette, [min, max]) = (controls.palette, self.range);
         let turned = cell.with_max_y(cell.top() + KNOB + 13.0);
         let response = ui.interact(turned, Id::unique(("number", self.title)), Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::slider(true, self.value, self.title));
+        response.widget_info(|| {
+            let mut about = WidgetInfo::slider(true, self.value, self.title);
+            about.current_text_value = Some((self.written)(self.value));
+            about
+        });
         let fine = if ui.input(|input| input.modifiers.shift) { FINE } else { 1.0 };
         let (mut value, step) = (self.value, step * fine);
         if response.drag_started() {
@@ -99,6 +103,9 @@ impl Number<'_> {
             let pressed = |key| ui.input(|input| input.num_presses(key)) as f64;
             steps += pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
             steps += 10.0 * (pressed(Key::PageUp) - pressed(Key::PageDown));
+            if pressed(Key::Delete) + pressed(Key::Backspace) > 0.0 {
+                value = origin;
+            }
         }
         if steps != 0.0 {
             value = (((value / step).round() + steps) * step).clamp(min, max);

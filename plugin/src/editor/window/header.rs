@@ -52,7 +52,7 @@ const FACES: [(Face, &str, &str); 4] = [
 pub(super) enum Request {
     /// Show this face.
     Show(Face),
-    /// Load the preset at this distance in the list.
+    /// Load and play the sound at this distance in the browser's list.
     Step(isize),
     /// Put the sound back to its pad.
     PutBack,

@@ -243,7 +243,7 @@ impl Window {
             notes: &notes,
         };
         // What is open over the page, or typed there, takes Escape for itself.
-        let is_busy = Popup::is_any_open(ui.ctx()) || controls.interaction.typing.is_some();
+        let is_busy = Popup::is_any_open(ui.ctx()) || controls.interaction.waits();
         let header = Header {
             name: &name,
             words: &self.shown.words(),
@@ -427,13 +427,15 @@ impl Window {
         }
         if self.over != over {
             // The knob into which one types has gone with its page.
-            self.interaction.typing = None;
+            (self.interaction.typing, self.interaction.naming) = (None, None);
         }
         if let Some(message) = self.history.take_lost() {
             self.news = Some(Ok(message));
             ui.ctx().request_repaint();
         }
-        if let (Some(name), Some(library)) = (self.history.take_chosen(), self.browser.library())
+        // What is only tried is not kept yet.
+        if self.over != Some(Over::Browser)
+            && let (Some(name), Some(library)) = (self.history.take_chosen(), self.browser.library())
             && let Err(error) = library.note_recent(&name)
         {
             self.news = Some(Err(error.to_string()));
@@ -447,6 +449,7 @@ impl Window {
         if std::mem::replace(&mut self.loads, loads) != loads {
             (self.history, self.versions) = (History::default(), Versions::default());
             self.interaction.switched_off.clear();
+            (self.interaction.typing, self.interaction.naming) = (None, None);
             self.news = Some(Ok(String::new()));
         }
     }

@@ -74,6 +74,7 @@ impl Window {
             Request::GiveUp => {
                 self.over = None;
                 self.give_up(host);
+                self.history.take_chosen();
             }
             Request::Browse | Request::Save => {
                 if self.over != Some(Over::Browser) {
