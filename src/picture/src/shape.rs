@@ -137,15 +137,15 @@ impl BodyShape {
         Self { origin, figure, shapes, speeds, caption }
     }
 
-    /// The place nearest to a point at which the body can be struck.
-    pub fn confined(&self, point: Point) -> Point {
+    /// The place nearest to a point to which one of the body's places can be moved: `place` is where that is now.
+    pub fn confined(&self, point: Point, place: impl Fn(&Body) -> Point) -> Point {
         let rounded = |share: f64| (share * 1000.0).round() / 1000.0;
         let point = Point { x: rounded(point.x), y: rounded(point.y) };
         match (self.origin.body(), self.figure.form) {
             // On a string, the place is counted from the nearer end.
             (None, _) => Point { x: point.x.min(1.0 - point.x).clamp(0.01, 0.5), y: 0.0 },
-            (Some(body), form) if form.is_line() => Point { y: body.strike.y, ..point },
-            (Some(body), form) if form.is_bell() => Point { x: body.strike.x, ..point },
+            (Some(body), form) if form.is_line() => Point { y: place(body).y, ..point },
+            (Some(body), form) if form.is_bell() => Point { x: place(body).x, ..point },
             (Some(_), _) => point,
         }
     }

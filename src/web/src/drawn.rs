@@ -71,7 +71,7 @@ impl Drawn {
     /// there, and can be struck elsewhere.
     pub(crate) fn touch(&mut self, size: [f32; 2], at: [f32; 2]) -> bool {
         let (point, distance) = self.shape.nearest(rect(size), pos2(at[0], at[1]));
-        let Point { x, y } = self.shape.confined(point);
+        let Point { x, y } = self.shape.confined(point, |body| body.strike);
         self.numbers.clear();
         self.numbers.extend([x as f32, y as f32]);
         distance <= REACH && matches!(self.shape.origin, Origin::FromBody(_))

@@ -47,14 +47,7 @@ impl Handle {
 
     /// The place nearest to a point to which it can be moved.
     pub(super) fn confined(self, point: Point, shape: &BodyShape) -> Point {
-        let confined = shape.confined(point);
-        let Some(body) = shape.origin.body() else { return confined };
-        let now = if self == Self::Ear { body.pickup } else { body.strike };
-        match shape.figure.form {
-            Form::Line | Form::Rod => Point { y: now.y, ..confined },
-            Form::Bell | Form::HandBell => Point { x: now.x, ..confined },
-            _ => confined,
-        }
+        shape.confined(point, |body| if self == Self::Ear { body.pickup } else { body.strike })
     }
 
     /// The place so many steps of the arrow keys to the right and down from another.

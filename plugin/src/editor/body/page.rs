@@ -163,9 +163,8 @@ impl BodyPage {
 
     /// Shows the page. Returns a message.
     pub(crate) fn show(&mut self, ui: &mut Ui, rect: Rect, shown: &Shown, controls: &mut Controls) -> Option<String> {
-        let inner = rect;
         if shown.preset().is_none() {
-            offer_pad(ui, inner, shown, controls);
+            offer_pad(ui, rect, shown, controls);
             return None;
         }
         if self.edit.as_ref().is_some_and(|edit| !edit.is_of(shown.loaded())) {
@@ -180,9 +179,9 @@ impl BodyPage {
             self.part = Part::First;
         }
         let [wide, least_width, least_height] = PICTURED;
-        let is_pictured = inner.width() >= least_width && inner.height() >= least_height;
-        let side = inner.with_max_x(inner.left() + if is_pictured { wide } else { SIDE });
-        let rest = inner.with_min_x(side.right() + 2.0 * GAP);
+        let is_pictured = rect.width() >= least_width && rect.height() >= least_height;
+        let side = rect.with_max_x(rect.left() + if is_pictured { wide } else { SIDE });
+        let rest = rect.with_min_x(side.right() + 2.0 * GAP);
         let mut picked = self.side(ui, side, is_pictured, &origin, controls);
         if is_pictured && self.part != Part::Joint {
             let below = side.with_min_y(side.top() + 3.0 * ROW + GAP);
