@@ -153,9 +153,17 @@ fn caption(ui: &mut Ui, words: &str, controls: &Controls) {
     line(ui.painter(), place, Align2::LEFT_CENTER, words, SMALL, controls.palette.muted);
 }
 
-/// How many things of a kind stand beside each other.
-fn beside(ui: &Ui, kind: usize) -> usize {
-    BESIDE[usize::from(ui.available_width() < WIDE)][kind]
+/// Shows things of a kind in rows of this height, as many beside each other as there is room for.
+fn rows<T>(ui: &mut Ui, things: &[T], kind: usize, height: f32, mut show: impl FnMut(&mut Ui, Rect, &T)) {
+    let columns = BESIDE[usize::from(ui.available_width() < WIDE)][kind];
+    for row in things.chunks(columns) {
+        let place = next(ui, height);
+        let wide = place.width() / columns as f32;
+        for (column, thing) in row.iter().enumerate() {
+            let corner = place.min + vec2(column as f32 * wide, 0.0);
+            show(ui, Rect::from_min_size(corner, vec2(wide, height)), thing);
+        }
+    }
 }
 
 /// The macros that the sound names, as knobs.
@@ -167,17 +175,11 @@ fn macros(ui: &mut Ui, shown: &Shown, controls: &mut Controls) {
         return;
     }
     caption(ui, "Macros", controls);
-    let columns = beside(ui, 0);
-    for row in macros.chunks(columns) {
-        let place = next(ui, CELL_HEIGHT);
-        let wide = place.width() / columns as f32;
-        for (column, (info, name)) in row.iter().enumerate() {
-            let corner = place.min + vec2(column as f32 * wide, 0.0);
-            let cell = Rect::from_min_size(corner, vec2(wide, CELL_HEIGHT - 4.0)).shrink2(vec2(1.0, 0.0));
-            let ring = Ring::of(info, &shown.patch().routes, controls);
-            knob::show(ui, (cell, KNOB), info, name, &ring, controls);
-        }
-    }
+    rows(ui, &macros, 0, CELL_HEIGHT, |ui, cell, (info, name)| {
+        let cell = cell.with_max_y(cell.bottom() - 4.0).shrink2(vec2(1.0, 0.0));
+        let ring = Ring::of(info, &shown.patch().routes, controls);
+        knob::show(ui, (cell, KNOB), info, name, &ring, controls);
+    });
 }
 
 /// The exciters that act.
@@ -188,16 +190,10 @@ fn moved_by(ui: &mut Ui, controls: &Controls) {
         return;
     }
     caption(ui, "Moved by", controls);
-    let columns = beside(ui, 1);
-    for row in movers.chunks(columns) {
-        let place = next(ui, MOVER);
-        let wide = place.width() / columns as f32;
-        for (column, lamp) in row.iter().enumerate() {
-            let at = Rect::from_min_size(place.min + vec2(column as f32 * wide, 0.0), vec2(wide, MOVER));
-            let picture = Rect::from_min_size(at.min + vec2(0.0, 2.0), vec2(MOVER, MOVER - 4.0));
-            mover::paint(ui.painter(), picture, lamp.param, palette.accent, palette);
-            let name = at.with_min_x(picture.right() + GAP);
-            line(ui.painter(), name, Align2::LEFT_CENTER, lamp.section, SMALL + 0.5, palette.text);
-        }
-    }
+    rows(ui, &movers, 1, MOVER, |ui, at, lamp| {
+        let picture = Rect::from_min_size(at.min + vec2(0.0, 2.0), vec2(MOVER, MOVER - 4.0));
+        mover::paint(ui.painter(), picture, lamp.param, palette.accent, palette);
+        let name = at.with_min_x(picture.right() + GAP);
+        line(ui.painter(), name, Align2::LEFT_CENTER, lamp.section, SMALL + 0.5, palette.text);
+    });
 }
