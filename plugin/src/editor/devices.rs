@@ -2,7 +2,7 @@
 
 use crate::devices::{Chosen, Devices};
 use crate::editor::controls::{Controls, Hint};
-use crate::editor::theme::{GAP, PADDING, SMALL};
+use crate::editor::theme::{GAP, PADDING, SMALL, paint_panel};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::choice::Field;
 use crate::editor::widgets::text::{line, paragraph};
@@ -55,7 +55,7 @@ impl<T: PartialEq + Clone> Choices<T> {
 /// Shows the page. Returns whether the user closes it.
 pub(super) fn show(ui: &Ui, rect: Rect, controls: &mut Controls) -> bool {
     let palette = controls.palette;
-    palette.paint_panel(ui.painter(), rect);
+    paint_panel(ui.painter(), rect, palette);
     let inner = rect.shrink(2.0 * PADDING);
     let devices = controls.params.link().devices.look();
     let share = (inner.width() - 2.0 * GAP) / (COLUMNS[0] + COLUMNS[1]);

@@ -2,7 +2,7 @@
 
 use sprung::internals::editor::{body_of_modes, modes_of_body, modes_of_pair, pair_of_modes};
 use sprung::patch::ModeTable;
-use sprung::sound::bodies::{Body, MATERIALS, Model, Pitch, Point};
+use sprung::sound::bodies::{Body, MATERIALS, Model, Pitch};
 use sprung::sound::pairs::{Link, Pair};
 
 /// The origin of a sound's modes.
@@ -73,12 +73,6 @@ impl Origin {
         let mut other = self.clone();
         other.body_mut()?.material = *MATERIALS.iter().find(|material| material.id == id)?;
         Some(other)
-    }
-
-    /// Lets the body be struck elsewhere, and computes its modes; `None` for a table, or if they cannot be computed.
-    pub fn struck_at(&mut self, point: Point) -> Option<ModeTable> {
-        self.body_mut()?.strike = point;
-        self.modes().ok().flatten()
     }
 
     /// Computes the modes; `None` for a table, which has no body. The error says why the two bodies have no modes.

@@ -56,5 +56,10 @@ pub const ESSENTIALS: [(Param, &str); 6] = [
     (Param::SpaceSize, "Space size"),
 ];
 
+/// Whether a knob does nothing as long as there is no space.
+pub fn needs_space(param: Param) -> bool {
+    matches!(param, Param::SpaceMix | Param::SpaceSize)
+}
+
 /// Names of the spaces as floors, by their values.
-pub const FLOORS: [&str; 4] = ["Nothing", "Plate", "Spring", "Room"];
+pub const FLOORS: [&str; 4] = ["None", "Plate", "Spring", "Room"];

@@ -1,33 +1,80 @@
-// Draws the body as it swings, and lets it be struck where it is clicked.
-
-const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+// Draws the body as it swings on its floor, and lets strike, ear and floor be moved on it.
+import { colour, number } from "./theme.js";
 
 // The velocity of a strike by a pointer at rest, as in the plugin, and how much harder it is for each pixel a millisecond.
 const [AT_REST, PER_SPEED] = [0.7, 0.2];
 const RECENT = 80; // ms
+// Movement of the pointer for the whole way of the floor, how far from its far edge and from the ear that is taken hold of, and how far a
+// pointer moves before it drags, in pixels.
+const [TRAVEL, GRIP, EAR, SLOP] = [200, 12, 18, 5];
 
 // How the lines of a body are painted: colour, width, strength.
-const INKS = [["string", 2.5, 1], ["--text", 1.2, 0.5], ["--text", 1, 0.25], ["--text", 1, 0.6], ["--muted", 1.3, 1]];
+const INKS = [["accent", 2.5, 1], ["text", 1.2, 0.5], ["text", 1, 0.25], ["text", 1, 0.6], ["muted", 1.3, 1]];
 
-// `player` is the page’s own, with the preset that is heard; `strike(place, velocity)` is called for a click, without a place if the
-// body has none there. Returns functions that take the energies of the modes, and that say that the body is another.
-export function drawBody(canvas, player, strike) {
-  let [before, moves, drawn, renewed] = [performance.now(), [], "", 0];
+// `player` is the page’s own, with the preset that is heard. `strike(place, velocity)` is called for a click, without a place if the body
+// has none there; `listen(place)` when the ear is let go elsewhere; `nudge(name, way)` when the floor is dragged, by a share of the way.
+// Returns functions that take the energies of the modes and the level, that say that the picture is another, and that tell where the ear
+// and the floor’s far edge are.
+export function drawBody(canvas, player, { strike, listen, nudge }) {
+  let [before, moves, drawn, renewed, level] = [performance.now(), [], "", 0, 0];
   let energies = new Float32Array(64);
-  const size = () => [canvas.clientWidth, canvas.clientHeight];
+  // What the floor is, where the ear is, and what a pointer drags: the ear, or a knob by its name.
+  let [floor, ear, held] = [undefined, undefined, undefined];
+  // What nothing covers: its left end, its width and its height.
+  const middle = () => {
+    const look = getComputedStyle(canvas);
+    const [left, right] = ["--left", "--right"].map((side) => Number.parseFloat(look.getPropertyValue(side)));
+    return [left, canvas.clientWidth - left - right, canvas.clientHeight];
+  };
+  const at = (event) => {
+    const box = canvas.getBoundingClientRect();
+    return [event.clientX - box.x, event.clientY - box.y];
+  };
+  const touch = (isEar, [x, y]) => {
+    const [left, width, height] = middle();
+    return player.touch(isEar, width, height, x - left, y);
+  };
+  // The knob of the floor’s part there.
+  const part = ([x, y]) => {
+    if (!floor || floor.space === 0 || y < floor.far - GRIP) return undefined;
+    return y < floor.far + GRIP ? "Space size" : "Space mix";
+  };
 
   canvas.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
-    const box = canvas.getBoundingClientRect();
+    const here = at(event);
     const first = moves.find(([, , time]) => event.timeStamp - time < RECENT);
     const way = first ? Math.hypot(event.clientX - first[0], event.clientY - first[1]) : 0;
     const speed = way / Math.max(1, event.timeStamp - (first?.[2] ?? 0));
-    const place = player.touch(...size(), event.clientX - box.x, event.clientY - box.y);
-    strike(place, Math.min(127, Math.round(127 * (AT_REST + PER_SPEED * speed))));
+    const velocity = Math.min(127, Math.round(127 * (AT_REST + PER_SPEED * speed)));
+    const isEar = ear && Math.hypot(here[0] - ear[0], here[1] - ear[1]) < EAR;
+    const place = isEar ? undefined : touch(false, here);
+    const name = isEar ? "ear" : place ? undefined : part(here);
+    if (name) {
+      canvas.setPointerCapture(event.pointerId);
+      held = { name, from: here, last: here[1], velocity, isMoved: false };
+    } else strike(place, velocity);
   });
   canvas.addEventListener("pointermove", (event) => {
     moves = moves.filter(([, , time]) => event.timeStamp - time < RECENT).concat([[event.clientX, event.clientY, event.timeStamp]]);
+    const here = at(event);
+    if (!held) {
+      canvas.style.cursor = part(here) && !touch(false, here) ? "ns-resize" : "";
+      return;
+    }
+    held.isMoved ||= Math.hypot(here[0] - held.from[0], here[1] - held.from[1]) > SLOP;
+    if (!held.isMoved) return;
+    if (held.name === "ear") held.place = touch(true, here) ?? held.place;
+    else nudge(held.name, (held.last - here[1]) / TRAVEL);
+    held.last = here[1];
+    renewed++;
   });
+  canvas.addEventListener("pointerup", () => {
+    if (held?.place) listen(held.place);
+    if (held) strike(undefined, held.velocity);
+    held = undefined;
+  });
+  canvas.addEventListener("pointercancel", () => (held = undefined));
   for (const end of ["pointerup", "pointercancel", "pointerleave"]) canvas.addEventListener(end, () => (moves = []));
   canvas.addEventListener("keydown", (event) => {
     if (event.repeat || (event.key !== "Enter" && event.key !== " ")) return;
@@ -41,50 +88,105 @@ export function drawBody(canvas, player, strike) {
     const seconds = matchMedia("(prefers-reduced-motion: reduce)").matches ? -1 : Math.min(0.25, (now - before) / 1000);
     before = now;
     const scale = Math.min(2, devicePixelRatio);
-    const [width, height] = size();
+    const [left, width, height] = middle();
     // A body at rest stays as it was drawn.
-    const still = energies.some((energy) => energy > 0) ? "" : [width, height, scale, colour("--gold"), renewed].join();
-    if (width === 0 || height === 0 || (still !== "" && still === drawn)) return;
+    const still = energies.some((energy) => energy > 0) || level > 0 ? "" : [left, width, height, scale, renewed].join();
+    if (width <= 0 || height === 0 || (still !== "" && still === drawn)) return;
     drawn = still;
-    if (canvas.width !== Math.round(width * scale)) canvas.width = Math.round(width * scale);
+    const whole = canvas.clientWidth;
+    if (canvas.width !== Math.round(whole * scale)) canvas.width = Math.round(whole * scale);
     if (canvas.height !== Math.round(height * scale)) canvas.height = Math.round(height * scale);
     const context = canvas.getContext("2d");
     context.setTransform(scale, 0, 0, scale, 0, 0);
-    context.clearRect(0, 0, width, height);
-    const gold = colour("--gold");
-    paint(context, player.draw(energies, width, height, seconds, Number.parseInt(gold.slice(1), 16)), gold);
+    context.clearRect(0, 0, whole, height);
+    floor = paintFloor(context, player.floor(whole, height, left, left + width, level), whole, height);
+    context.translate(left, 0);
+    const heard = paint(context, player.draw(energies, width, height, seconds, number("accent")));
+    ear = heard && [heard[0] + left, heard[1]];
   }
   requestAnimationFrame(frame);
-  return { swing: (look) => (energies = look), renew: () => renewed++ };
+  return {
+    swing: (look, loudness) => ([energies, level] = [look, loudness]),
+    renew: () => renewed++,
+    places: () => ({ ear, far: floor.far }),
+  };
 }
 
-// The numbers are as the module’s `draw` says.
-export function paint(context, numbers, gold) {
-  let at = 0;
-  const next = () => numbers[at++];
-  const trace = (points) => {
-    context.beginPath();
-    for (let n = 0; n < points; n++) n === 0 ? context.moveTo(next(), next()) : context.lineTo(next(), next());
-  };
+// Traces so many points.
+function trace(context, next, points) {
+  context.beginPath();
+  for (let n = 0; n < points; n++) n === 0 ? context.moveTo(next(), next()) : context.lineTo(next(), next());
+}
+
+// The numbers are as the module’s `floor` says. Returns the space and the height of the far edge.
+function paintFloor(context, numbers, width, height) {
+  let place = 0;
+  const next = () => numbers[place++];
+  const [space, strength, glow, far, from, to] = [next(), next(), next(), next(), next(), next()];
+  const ground = context.createLinearGradient(0, far, 0, height);
+  ground.addColorStop(0, colour("panel"));
+  ground.addColorStop(1, `color-mix(in srgb, ${colour("raised")} 80%, ${colour("panel")})`);
+  context.fillStyle = ground;
+  context.beginPath(), context.moveTo(from, far), context.lineTo(to, far), context.lineTo(width, height), context.lineTo(0, height);
+  context.fill();
+  context.lineWidth = 1;
+  context.strokeStyle = colour("line");
+  context.beginPath(), context.moveTo(from, far), context.lineTo(to, far), context.stroke();
+  context.save();
+  context.beginPath(), context.rect(0, space === 1 ? far : 0, width, height), context.clip();
+  context.lineWidth = 1.2 + glow;
+  context.strokeStyle = `color-mix(in srgb, ${colour("accent")} ${100 * strength}%, ${colour("line")})`;
+  context.fillStyle = `color-mix(in srgb, ${colour("ground")} 70%, transparent)`;
+  for (let lines = next(); lines > 0; lines--) {
+    trace(context, next, next());
+    space === 0 ? context.fill() : context.stroke();
+  }
+  context.restore();
+  return { space, far };
+}
+
+// The numbers are as the module’s `draw` says. Returns where the ear is, if it is known.
+export function paint(context, numbers) {
+  let place = 0;
+  const next = () => numbers[place++];
   // Patches meet without gaps when their edges are drawn too.
   context.lineWidth = 0.8;
   context.lineJoin = "round";
   const polygons = next();
   for (let n = 0; n < polygons; n++) {
-    trace(4), context.closePath();
+    trace(context, next, 4), context.closePath();
     context.fillStyle = context.strokeStyle = `rgb(${next()} ${next()} ${next()})`;
     context.fill(), context.stroke();
   }
-  const inks = INKS.map(([ink, ...look]) => [ink === "string" ? gold : colour(ink), ...look]);
+  const inks = INKS.map(([ink, ...look]) => [colour(ink), ...look]);
   for (let lines = next(); lines > 0; lines--) {
     [context.strokeStyle, context.lineWidth, context.globalAlpha] = inks[next()];
-    trace(next()), context.stroke();
+    trace(context, next, next()), context.stroke();
   }
   context.globalAlpha = 1;
-  if (at === numbers.length) return;
+  if (place < numbers.length) handle(context, next(), next(), "accent", "strike");
+  if (place === numbers.length) return undefined;
   const [x, y] = [next(), next()];
+  handle(context, x, y, "text", "listen");
+  return [x, y];
+}
+
+// A place that can be moved, with its name, and for an ear its waves.
+function handle(context, x, y, edge, name) {
+  const isEar = name === "listen";
   context.lineWidth = 2;
-  context.strokeStyle = context.fillStyle = colour("--text");
-  context.beginPath(), context.arc(x, y, 5.5, 0, 7), context.stroke();
-  context.beginPath(), context.arc(x, y, 1.8, 0, 7), context.fill();
+  context.strokeStyle = colour(edge);
+  context.fillStyle = colour("panel");
+  context.beginPath(), context.arc(x, y, 7.5, 0, 7), context.fill(), context.stroke();
+  context.fillStyle = colour("text");
+  context.beginPath(), context.arc(x, y, 2.4, 0, 7), context.fill();
+  context.lineWidth = 1.5;
+  for (const radius of isEar ? [13, 18.5] : []) context.beginPath(), context.arc(x, y, radius, -0.75, 0.75), context.stroke();
+  context.font = "11px Ubuntu, system-ui, sans-serif";
+  context.textBaseline = "middle";
+  const [left, wide] = [x + (isEar ? 24 : 13), context.measureText(name).width + 8];
+  context.fillStyle = colour("panel");
+  context.beginPath(), context.roundRect(left, y - 7.5, wide, 15, 4), context.fill();
+  context.fillStyle = colour("text");
+  context.fillText(name, left + 4, y + 0.5);
 }

@@ -15,7 +15,7 @@ const [SOFTEST, LOUDEST] = [30, 127];
 const NARROW = 25;
 
 // `play(key, isOn, velocity)` is called for each key, with a velocity where the pointer gives one. Returns functions that show a
-// key, and that bring a key to the middle of a narrow screen.
+// key, and that bring the home of a sound to the middle of a narrow screen.
 export function listen(place, play) {
   const keys = new Map();
   for (let key = LOWEST; key <= HIGHEST; key++) {
@@ -24,6 +24,7 @@ export function listen(place, play) {
     button.ariaLabel = `${NAMES[key % 12]} ${Math.floor(key / 12) - 1}`;
     button.tabIndex = -1;
     button.dataset.key = key;
+    if (key % 12 === 0) button.textContent = `C${key / 12 - 1}`;
     place.append(button);
     keys.set(key, button);
   }
@@ -31,7 +32,8 @@ export function listen(place, play) {
   computerKeys(place, play, keys);
   return {
     show: (key, isOn) => keys.get(key)?.classList.toggle("down", isOn),
-    centre: (middle) => {
+    // For a sound that is made for some keys, and has one at home.
+    centre: ({ lowest: from, highest: to, home: middle }) => {
       // From a white C, so that octaves are seen as such.
       const lowest = Math.max(LOWEST, Math.min(HIGHEST + 1 - NARROW, middle - (middle % 12) - 12 * (middle % 12 < 6)));
       const highest = lowest + NARROW - 1;
@@ -39,6 +41,7 @@ export function listen(place, play) {
       const entry = Math.max(lowest, Math.min(highest, middle));
       keys.forEach((button, key) => {
         button.classList.toggle("far", key < lowest || key > highest);
+        button.classList.toggle("beyond", key < from || key > to);
         button.tabIndex = key === entry ? 0 : -1;
       });
     },

@@ -4,6 +4,7 @@ import { listen, useMidi } from "./keys.js";
 import { drawBody } from "./body.js";
 import { panel } from "./panel.js";
 import { draw } from "./pictures.js";
+import { dress } from "./theme.js";
 import { renderTake, wav } from "./wav.js";
 
 const element = (id) => document.getElementById(id);
@@ -27,7 +28,7 @@ async function start() {
   made.port.onmessage = ({ data }) => {
     if (data.masses) {
       drawMasses(data.masses);
-      body.swing(data.masses.subarray(1, 65));
+      body.swing(data.masses.subarray(1, 65), data.level);
     }
     if (data.played) {
       state.take.push(data.played);
@@ -76,24 +77,27 @@ function strike(velocity) {
   held = { key, timer: setTimeout(letGo, 700) };
 }
 
-// A change of the body, which the page’s own player draws.
+// A change of the sound, which the page’s own player draws.
 function change(event) {
   send(event);
   own.play(event, 0);
   body.renew();
 }
 
-const body = drawBody(element("body"), own, (place, velocity) => {
-  if (place) change({ strike: place });
-  strike(velocity);
+const controls = own.controls();
+const shown = panel(element, own, controls, change, () => strike(89));
+const body = drawBody(element("body"), own, {
+  strike: (place, velocity) => {
+    if (place) change({ strike: place });
+    strike(velocity);
+  },
+  listen: (place) => change({ listen: place }),
+  nudge: shown.nudge,
 });
-
-function turn(event) {
-  send(event);
-  own.play(event, 0);
-}
-
-const show = panel(element, own, (event) => (event.make ? change(event) : turn(event)), () => strike(89));
+dress(element("theme"), controls, () => {
+  shown.colour();
+  body.renew();
+});
 
 function choose(preset) {
   state.preset = preset;
@@ -101,24 +105,36 @@ function choose(preset) {
   body.renew();
   state.key = preset.home;
   element("about").textContent = preset.comment;
-  show(preset);
-  keys.centre(preset.home);
+  element("preset").value = preset.number;
+  shown.show(preset);
+  keys.centre(preset);
+  drawMasses(own.look());
   if (node) send({ preset: preset.number });
 }
 
-// The family’s presets; the first list is of all.
-function list(family) {
-  const chosen = presets.filter((preset) => family === "" || preset.family === family);
-  element("preset").replaceChildren(...chosen.map(({ name, number }) => new Option(name, number)));
-  return chosen[0];
+// The presets of the chosen family.
+const chosen = () => presets.filter((preset) => ["", preset.family].includes(element("family").value));
+
+function list() {
+  element("preset").replaceChildren(...chosen().map(({ name, number }) => new Option(name, number)));
 }
 
 const families = [...new Set(presets.map((preset) => preset.family))].filter(Boolean);
-element("family").append(new Option("all", ""), ...families.map((family) => new Option(family)));
-list("");
-element("preset").value = state.preset.number;
+element("family").append(new Option("all families", ""), ...families.map((family) => new Option(family)));
+list();
 choose(state.preset);
-element("family").onchange = ({ target }) => choose(list(target.value));
+element("family").onchange = () => {
+  list();
+  choose(chosen()[0]);
+};
+// The next sound of the list, which is heard.
+function step(by) {
+  const among = chosen();
+  choose(among[(among.indexOf(state.preset) + by + among.length) % among.length]);
+  strike(89);
+}
+element("before").onclick = () => step(-1);
+element("after").onclick = () => step(1);
 // The pitch wheel springs back when it is let go.
 const bend = (value) => send({ message: [0xe0, value & 127, value >> 7] });
 element("bend").oninput = ({ target }) => bend(+target.value);
@@ -143,8 +159,7 @@ element("forget").onclick = async () => {
   element("wheel").value = 0;
   choose(state.preset);
   await old?.context.close();
-  body.swing(new Float32Array(64));
-  drawMasses(new Float32Array(129));
+  body.swing(new Float32Array(64), 0);
 };
 
 // A message of a keyboard; the page’s wheel follows the keyboard’s.
@@ -161,5 +176,5 @@ element("midi").onclick = () =>
   );
 
 // For tests.
-window.sprung = { module, presets, state, play, choose };
+window.sprung = { module, presets, state, body, play, choose };
 document.body.dataset.ready = "yes";

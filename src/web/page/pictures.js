@@ -1,9 +1,9 @@
 // Draws the modes and the phase plane, and lets the mass be pulled.
+import { colour } from "./theme.js";
 
 const TURNS = 1; // per second: the true motion is too fast to be seen
 const FLOOR = -90; // dB
 
-const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name);
 
 // `strike(velocity)` is called when the mass is let go, with 0 to 1. Returns a function that takes what the player looks at.
 export function draw(modes, plane, strike) {
@@ -58,8 +58,8 @@ function drawModes(context, { width, height }, energies, ratios) {
   const [low, high] = [Math.min(...logs) - 0.5, Math.max(...logs) + 0.5];
   const [bottom, top] = [height - 36, 16];
   context.font = "20px system-ui, sans-serif";
-  context.fillStyle = colour("--muted");
-  context.strokeStyle = colour("--line");
+  context.fillStyle = colour("muted");
+  context.strokeStyle = colour("line");
   for (let octave = Math.ceil(low); octave <= high; octave++) {
     const x = ((octave - low) / (high - low)) * width;
     context.beginPath(), context.moveTo(x, top), context.lineTo(x, bottom), context.stroke();
@@ -69,7 +69,7 @@ function drawModes(context, { width, height }, energies, ratios) {
     const x = ((logs[place] - low) / (high - low)) * width;
     const level = energies[n] > 0 ? 10 * Math.log10(energies[n]) : FLOOR;
     const length = Math.max(0, Math.min(1, 1 - level / FLOOR)) * (bottom - top);
-    context.fillStyle = colour(length > 0 ? "--gold" : "--line");
+    context.fillStyle = colour(length > 0 ? "accent" : "line");
     context.fillRect(x - 3, bottom - Math.max(3, length), 6, Math.max(3, length));
   });
 }
@@ -77,11 +77,11 @@ function drawModes(context, { width, height }, energies, ratios) {
 function drawPlane(context, size, trail, at, isPulled) {
   const point = ([x, y]) => [size / 2 + x * size * 0.45, size / 2 - y * size * 0.45];
   context.clearRect(0, 0, size, size);
-  context.strokeStyle = colour("--line");
+  context.strokeStyle = colour("line");
   context.beginPath(), context.arc(size / 2, size / 2, size * 0.45, 0, 7), context.stroke();
   context.beginPath(), context.moveTo(0, size / 2), context.lineTo(size, size / 2);
   context.moveTo(size / 2, 0), context.lineTo(size / 2, size), context.stroke();
-  context.strokeStyle = context.fillStyle = colour("--gold");
+  context.strokeStyle = context.fillStyle = colour("accent");
   trail.slice(1).forEach((to, n) => {
     context.globalAlpha = (n / trail.length) ** 2;
     context.beginPath(), context.moveTo(...point(trail[n])), context.lineTo(...point(to)), context.stroke();

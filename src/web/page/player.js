@@ -1,11 +1,12 @@
-// An instance of the module. A take is a list of {frame, preset}, {frame, strike}, {frame, make}, {frame, param, position} and {frame,
-// message}: a preset’s number, the place at which its body is struck from then on, the numbers of its model and material, a
-// parameter’s number with 0 to 1, or the bytes of a MIDI message, in order of frames from the start. The same take gives the same samples, whatever the lengths of blocks.
+// An instance of the module. A take is a list of {frame, preset}, {frame, strike}, {frame, listen}, {frame, make}, {frame, param,
+// position} and {frame, message}: a preset’s number, the place at which its body is struck or heard from then on, the numbers of its model
+// and material, a parameter’s number with 0 to 1, or the bytes of a MIDI message, in order of frames from the start. The same take gives
+// the same samples, whatever the lengths of blocks.
 
 const BLOCK = 1024;
 
 // Whether an event of a take is set between blocks.
-const setsSound = ({ preset, strike, make }) => preset !== undefined || strike !== undefined || make !== undefined;
+const setsSound = ({ preset, strike, listen, make }) => [preset, strike, listen, make].some((one) => one !== undefined);
 
 // Whether an event of a take starts a note.
 export const startsNote = ({ message }) => message && (message[0] & 0xf0) === 0x90 && message[2] > 0;
@@ -60,7 +61,8 @@ export class Player {
   // Plays one event of a take, at an offset into the next block.
   play(event, offset) {
     if (event.preset !== undefined) this.wasm.load(this.synth, event.preset);
-    else if (event.strike !== undefined) this.wasm.strike_at(this.synth, ...event.strike);
+    else if (event.strike !== undefined) this.wasm.put(this.synth, false, ...event.strike);
+    else if (event.listen !== undefined) this.wasm.put(this.synth, true, ...event.listen);
     else if (event.make !== undefined) this.wasm.make(this.synth, ...event.make);
     else if (event.param !== undefined) this.wasm.turn(this.synth, offset, event.param, event.position);
     else this.wasm.midi(this.synth, offset, event.message[0], event.message[1] ?? 0, event.message[2] ?? 0);
@@ -100,9 +102,15 @@ export class Player {
     return this.floats(this.wasm.numbers(this.synth), length);
   }
 
-  // The place of the body at a place of its picture; none where it cannot be struck.
-  touch(width, height, x, y) {
-    const isTouched = this.wasm.touch(this.synth, width, height, x, y);
+  // The floor of a stage, as the module’s `floor` says.
+  floor(width, height, left, right, level) {
+    const length = this.wasm.floor(this.synth, width, height, left, right, level);
+    return this.floats(this.wasm.numbers(this.synth), length);
+  }
+
+  // The place of the body at a place of its picture; none where it cannot be struck, or its ear cannot be moved.
+  touch(isEar, width, height, x, y) {
+    const isTouched = this.wasm.touch(this.synth, isEar, width, height, x, y);
     return isTouched ? [...this.floats(this.wasm.numbers(this.synth), 2)] : undefined;
   }
 

@@ -2,10 +2,11 @@
 
 use ecolor::Color32;
 use emath::{Pos2, Rect, pos2, vec2};
+use sprung::params::{Param, Values};
 use sprung::preset::Preset;
 use sprung::sound::bodies::Point;
 use sprung_picture::play::MODELS;
-use sprung_picture::{BodyShape, Figure, Origin, Picture, Pose, REACH, Swing};
+use sprung_picture::{BodyShape, Figure, Floor, Origin, Picture, Pose, REACH, Swing};
 
 /// Number of modes that are shown.
 pub(crate) const SHOWN: usize = 64;
@@ -26,16 +27,43 @@ impl Drawn {
         Self { shape, swing: Swing::default(), energies: [0.0; SHOWN], numbers: Vec::new() }
     }
 
-    /// Draws the body some seconds later (at its greatest bend if they are negative), in a picture of this size, with a colour (0xRRGGBB) for what moves. The numbers are: how many
-    /// polygons, and for each four corners and its colour; how many lines, and for each its ink (0 for a string, or else 1 more than
-    /// that of [`sprung_picture::Ink`]), how many points, and these; and the place of the strike, if it is known. Returns how many numbers they are.
+    /// Draws the body some seconds later (at its greatest bend if they are negative), in a picture of this size, with a colour (0xRRGGBB)
+    /// for what moves. The numbers are: how many polygons, and for each four corners and its colour; how many lines, and for each its ink
+    /// (0 for a string, or else 1 more than that of [`sprung_picture::Ink`]), how many points, and these; and the places of the strike and
+    /// of the ear, if they are known and can be moved. Returns how many numbers they are.
     pub(crate) fn draw(&mut self, size: [f32; 2], seconds: f32, glow: u32) -> usize {
         let rect = rect(size);
         let moved = self.swing.advance((seconds >= 0.0).then_some(seconds), &self.shape, &self.energies, rect);
-        let strike = self.shape.origin.body().map(|body| body.strike);
+        let body = self.shape.origin.body();
+        let strike = body.map(|body| body.strike);
         let pose = Pose { displacements: &moved, nodal: self.shape.lines_of(&self.energies), strike };
         let picture = Picture::of(rect, &self.shape.figure, &pose, colour(glow));
-        self.write(&picture)
+        let ear = body.filter(|_| self.has_places()).map(|body| body.pickup);
+        let heard = ear.map(|ear| self.shape.figure.form.on(self.shape.place(rect), ear, 0.0));
+        self.write(&picture);
+        self.numbers.extend(heard.iter().flat_map(|at| [at.x, at.y]));
+        self.numbers.len()
+    }
+
+    /// Draws the floor of a stage of this size, of which the middle reaches from one of its sides to another, for the level that sounds.
+    /// The numbers are: the space; how strongly its waves glow, and how much of that is by the level; the height of its far edge, and its
+    /// ends; and how many lines, and for each how many points, and these. Where there is no space, the line goes round a shadow.
+    pub(crate) fn floor(&mut self, values: &Values, size: [f32; 2], middle: [f32; 2], level: f32) -> usize {
+        let (stage, [left, right]) = (rect(size), middle);
+        let space = values.get(Param::Space) as usize;
+        let (info, travel) = (Param::SpaceSize.info(), values.get(Param::SpaceSize));
+        let larger = if space > 0 { info.normalise(travel) - info.normalise(info.default) } else { 0.0 };
+        let floor = Floor::of(stage, stage.with_min_x(left).with_max_x(right), larger as f32);
+        let lines = if space > 0 { floor.lines(space) } else { vec![floor.shadow()] };
+        let [strength, glow] = Floor::glow(values.get(Param::SpaceMix) / 100.0, level);
+        let [from, to] = floor.ends;
+        self.numbers.clear();
+        self.numbers.extend([space as f32, strength, glow, floor.far, from, to, lines.len() as f32]);
+        for line in lines {
+            self.numbers.push(line.len() as f32);
+            self.numbers.extend(line.iter().flat_map(|at| [at.x, at.y]));
+        }
+        self.numbers.len()
     }
 
     /// Draws the tile of a model, as [`Drawn::draw`] does.
@@ -67,14 +95,19 @@ impl Drawn {
         numbers.len()
     }
 
-    /// Writes the coordinates of the point of the body that is nearest to a place in the picture. Returns whether the body is touched
-    /// there, and can be struck elsewhere.
-    pub(crate) fn touch(&mut self, size: [f32; 2], at: [f32; 2]) -> bool {
+    /// Writes the coordinates of the point of the body that is nearest to a place in the picture, and to which its ear can be moved, or
+    /// where it can be struck. Returns whether the body is touched there, and has such places.
+    pub(crate) fn touch(&mut self, is_ear: bool, size: [f32; 2], at: [f32; 2]) -> bool {
         let (point, distance) = self.shape.nearest(rect(size), pos2(at[0], at[1]));
-        let Point { x, y } = self.shape.confined(point, |body| body.strike);
+        let Point { x, y } = self.shape.confined(point, |body| if is_ear { body.pickup } else { body.strike });
         self.numbers.clear();
         self.numbers.extend([x as f32, y as f32]);
-        distance <= REACH && matches!(self.shape.origin, Origin::FromBody(_))
+        (is_ear || distance <= REACH) && self.has_places()
+    }
+
+    /// Whether strike and ear can be moved.
+    fn has_places(&self) -> bool {
+        matches!(self.shape.origin, Origin::FromBody(_))
     }
 }
 

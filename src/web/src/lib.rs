@@ -2,8 +2,8 @@
 //!
 //! A page shares no memory with its audio worklet, so each has an instance of the module of its own: the worklet's
 //! instance plays, the page's instance lists the presets and renders takes. Addresses are valid until the next call
-//! that allocates: [`create`], [`presets`], [`load`], [`strike_at`], [`process`] after one of these, [`energies`], [`draw`], [`numbers`] or [`touch`]; of these
-//! four, the first after another preset computes the shapes of its modes, which is slow.
+//! that allocates: [`create`], [`presets`], [`load`], [`put`], [`make`], [`process`] after one of these, [`energies`], [`draw`], [`tile`],
+//! [`floor`], [`numbers`] or [`touch`]; of these six, the first after another preset computes the shapes of its modes, which is slow.
 
 mod controls;
 mod drawn;
@@ -79,10 +79,8 @@ pub unsafe extern "C" fn turn(player: *mut Player, frame: u32, number: usize, po
     unsafe { at(player) }.turn(frame, number, position);
 }
 
-/// Writes the list of what the page can set: a line for each, separated by tabs. `exciter`, its name, the number of its level, that of
-/// another parameter that is least while it is off or −1, and the position at which it starts; `knob`, its name and number; `space`, its
-/// name, the parameter's number and its position; `model` and its name; `material`, its name and colour; `macro`, nothing, and its
-/// number. Returns the length in bytes; [`text`] returns its address.
+/// Writes the list of what the page can set and how it looks: a line for each kind and thing, separated by tabs, as `controls::list`
+/// says. Returns the length in bytes; [`text`] returns its address.
 ///
 /// # Safety
 /// `player` is from [`create`].
@@ -174,15 +172,15 @@ pub unsafe extern "C" fn look(player: *mut Player) -> *const f32 {
     unsafe { at(player) }.look().as_ptr()
 }
 
-/// Lets the body of the preset be struck at a place from the next block on, each coordinate from 0 to 1. Allocates. A table of modes,
-/// which has no body, and two joined bodies stay as they are.
+/// Lets the body of the preset be struck, or be heard, at a place from the next block on, each coordinate from 0 to 1. Allocates. A table
+/// of modes, which has no body, and two joined bodies stay as they are.
 ///
 /// # Safety
 /// `player` is from [`create`].
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn strike_at(player: *mut Player, x: f64, y: f64) {
+pub unsafe extern "C" fn put(player: *mut Player, is_ear: bool, x: f64, y: f64) {
     // SAFETY: as above.
-    unsafe { at(player) }.strike_at(x, y);
+    unsafe { at(player) }.put(is_ear, x, y);
 }
 
 /// The address of 64 numbers: the energies of the modes with which the body is drawn, to be written.
@@ -195,10 +193,10 @@ pub unsafe extern "C" fn energies(player: *mut Player) -> *mut f32 {
     unsafe { at(player) }.drawn().energies.as_mut_ptr()
 }
 
-/// Draws the body of the preset as it is some seconds after the last time (at its greatest bend if they are negative), `width` by `height` pixels large, with a colour (0xRRGGBB) for
-/// what moves. Returns how many numbers describe it; [`numbers`] returns their address. They are: how many polygons, and for each the
-/// four corners and red, green and blue; how many lines, and for each how many points, and these; and the place of the strike, if it is
-/// known. Allocates.
+/// Draws the body of the preset as it is some seconds after the last time (at its greatest bend if they are negative), `width` by `height`
+/// pixels large, with a colour (0xRRGGBB) for what moves. Returns how many numbers describe it; [`numbers`] returns their address. They
+/// are: how many polygons, and for each the four corners and red, green and blue; how many lines, and for each its ink, how many points,
+/// and these; and the places of the strike and of the ear, if they are known. Allocates.
 ///
 /// # Safety
 /// `player` is from [`create`].
@@ -208,7 +206,27 @@ pub unsafe extern "C" fn draw(player: *mut Player, width: f32, height: f32, seco
     unsafe { at(player) }.drawn().draw([width, height], seconds, glow)
 }
 
-/// The address of the last numbers of [`draw`] or [`touch`].
+/// Draws the floor of a stage of `width` by `height` pixels, whose middle reaches from `left` to `right`, for the level that sounds from 0
+/// to 1. Returns how many numbers describe it; [`numbers`] returns their address. They are: the space; how strongly its waves glow, and how
+/// much of that is by the level; the height of its far edge and its ends; how many lines, and for each how many points, and these. Where
+/// there is no space, the line goes round a shadow. Allocates.
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn floor(
+    player: *mut Player,
+    width: f32,
+    height: f32,
+    left: f32,
+    right: f32,
+    level: f32,
+) -> usize {
+    // SAFETY: as above.
+    unsafe { at(player) }.floor([width, height], [left, right], level)
+}
+
+/// The address of the last numbers of [`draw`], [`tile`], [`floor`] or [`touch`].
 ///
 /// # Safety
 /// `player` is from [`create`].
@@ -218,13 +236,13 @@ pub unsafe extern "C" fn numbers(player: *mut Player) -> *const f32 {
     unsafe { at(player) }.drawn().numbers.as_ptr()
 }
 
-/// Finds the point of the body that is nearest to a place in the picture, as two [`numbers`] for [`strike_at`]. Returns whether the body
-/// is touched there and can be struck there. Allocates.
+/// Finds the point of the body that is nearest to a place in the picture, as two [`numbers`] for [`put`]. Returns whether the body is
+/// touched there and can be struck or heard there. Allocates.
 ///
 /// # Safety
 /// `player` is from [`create`].
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn touch(player: *mut Player, width: f32, height: f32, x: f32, y: f32) -> bool {
+pub unsafe extern "C" fn touch(player: *mut Player, is_ear: bool, width: f32, height: f32, x: f32, y: f32) -> bool {
     // SAFETY: as above.
-    unsafe { at(player) }.drawn().touch([width, height], [x, y])
+    unsafe { at(player) }.drawn().touch(is_ear, [width, height], [x, y])
 }

@@ -64,19 +64,30 @@ impl Player {
         }
     }
 
-    /// Lets the body of the preset be struck elsewhere; its parameters stay. A table of modes knows nothing of places, and two joined
-    /// bodies take too long to compute while others sound: both stay as they are.
-    pub(crate) fn strike_at(&mut self, x: f64, y: f64) {
+    /// Lets the body of the preset be struck, or heard, elsewhere; its parameters stay. A table of modes knows nothing of places, and two
+    /// joined bodies take too long to compute while others sound: both stay as they are.
+    pub(crate) fn put(&mut self, is_ear: bool, x: f64, y: f64) {
         let mut origin = Origin::of(&self.preset.patch.modes);
         let point = Point { x: x.clamp(0.0, 1.0), y: y.clamp(0.0, 1.0) };
-        if origin.pair().is_some() || origin.body().is_none_or(|body| body.strike == point) {
+        if origin.pair().is_some() {
             return;
         }
-        if let Some(modes) = origin.struck_at(point) {
+        let Some(body) = origin.body_mut() else { return };
+        let place = if is_ear { &mut body.pickup } else { &mut body.strike };
+        if std::mem::replace(place, point) == point {
+            return;
+        }
+        if let Ok(Some(modes)) = origin.modes() {
             self.take_values();
             self.preset.patch.modes = modes;
             self.take_preset();
         }
+    }
+
+    /// Draws the floor of a stage.
+    pub(crate) fn floor(&mut self, size: [f32; 2], middle: [f32; 2], level: f32) -> usize {
+        let values = if self.is_new { self.preset.patch.values } else { *self.synth.values() };
+        self.drawn().floor(&values, size, middle, level)
     }
 
     /// Gives the preset a body of another model or material, by their numbers among the controls.
@@ -254,21 +265,21 @@ mod tests {
         player.drawn().energies[0] = 1.0;
         assert!(player.drawn().draw(size, 0.3, 0xff_ff_ff) > 10_000);
         assert_ne!(player.drawn().numbers, before);
-        assert!(!player.drawn().touch(size, [1.0, 1.0]), "beside it");
-        assert!(!player.drawn().touch(size, [300.0, 300.0]), "two joined bodies stay as they are");
+        assert!(!player.drawn().touch(false, size, [1.0, 1.0]), "beside it");
+        assert!(!player.drawn().touch(false, size, [300.0, 300.0]), "two joined bodies stay as they are");
         player.load(Preset::factory().iter().position(|preset| preset.name == "Gong").unwrap());
-        assert!(player.drawn().touch(size, [360.0, 210.0]));
+        assert!(player.drawn().touch(false, size, [360.0, 210.0]));
         let [x, y] = player.drawn().numbers[..] else { panic!("a point") };
         let modes = player.preset.patch.modes.clone();
         player.turn(0, macro_param(0).unwrap() as usize, 1.0);
         player.process(64);
-        player.strike_at(x.into(), y.into());
+        player.put(false, x.into(), y.into());
         assert_ne!(player.preset.patch.modes, modes);
         player.process(64);
         assert_eq!(player.synth.values().get(macro_param(0).unwrap()), 100.0, "a macro stays where it was turned to");
         player.load(Preset::factory().iter().position(|preset| preset.name == "Piccolo").unwrap());
         let modes = player.preset.patch.modes.clone();
-        player.strike_at(f64::NAN, 2.0);
+        player.put(false, f64::NAN, 2.0);
         assert_eq!(player.preset.patch.modes, modes, "a table stays as it is");
     }
 }

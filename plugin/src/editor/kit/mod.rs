@@ -17,7 +17,7 @@ use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::keyboard::grid::KeyGrid;
-use crate::editor::theme::{GAP, PADDING, TEXT};
+use crate::editor::theme::{GAP, PADDING, TEXT, paint_panel};
 use crate::editor::widgets::buttons::{Look, button, help_tab};
 use crate::editor::widgets::text::line;
 use crate::link::Link;
@@ -114,7 +114,7 @@ impl KitPage {
         let detail = rect.with_min_x(rect.right() - right);
         let middle = Rect::from_min_max(pos2(list.right() + GAP, rect.top()), pos2(detail.left() - GAP, rect.bottom()));
         for panel in [list, detail, middle] {
-            palette.paint_panel(ui.painter(), panel);
+            paint_panel(ui.painter(), panel, palette);
         }
         let inner = middle.shrink(PADDING);
         let (head, below) = inner.split_top_bottom_at_y(inner.top() + HEAD);
@@ -225,7 +225,7 @@ impl KitPage {
         controls: &mut Controls,
     ) -> Option<Request> {
         let palette = controls.palette;
-        palette.paint_panel(ui.painter(), rect);
+        paint_panel(ui.painter(), rect, palette);
         let (head, below) = rect.shrink(PADDING).split_top_bottom_at_y(rect.top() + PADDING + HEAD);
         let make = Rect::from_min_size(head.min, vec2(96.0, HEAD - 4.0));
         let response = button(ui, make, "Make a kit", "Make a kit of this sound", Look::Main, palette);

@@ -4,7 +4,7 @@ mod contents;
 pub(super) mod text;
 
 use crate::editor::controls::{Controls, Hint};
-use crate::editor::theme::{GAP, PADDING, Palette, RADIUS, SMALL, TEXT, font};
+use crate::editor::theme::{GAP, PADDING, Palette, RADIUS, SMALL, TEXT, font, paint_panel};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::{line, name_field, paragraph};
 use contents::{Entry, entries, first_with, has};
@@ -48,7 +48,7 @@ impl Manual {
     /// Shows the manual. Returns whether the user closes it.
     pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, controls: &mut Controls) -> bool {
         let palette = controls.palette;
-        palette.paint_panel(ui.painter(), rect);
+        paint_panel(ui.painter(), rect, palette);
         let inner = rect.shrink(PADDING);
         let side = inner.with_max_x(inner.left() + SIDE);
         self.search(ui, side.with_max_y(side.top() + 22.0), palette);

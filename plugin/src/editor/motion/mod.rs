@@ -7,7 +7,7 @@ use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::pages::sections::{Section, knobs, sections, show_title};
 use crate::editor::routes::list::List;
-use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, TITLE_HEIGHT};
+use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, TITLE_HEIGHT, paint_panel};
 use crate::editor::widgets::buttons::help_tab;
 use curve::Curve;
 use egui::{Rect, Ui, pos2, vec2};
@@ -48,8 +48,8 @@ impl MotionPage {
         let rows = if rect.height() >= TALL { 2 } else { 1 };
         let foot = rest.with_min_y(rest.bottom() - TITLE_HEIGHT - rows as f32 * CELL_HEIGHT - PADDING);
         let list = rest.with_max_y(foot.top() - GAP);
-        palette.paint_panel(ui.painter(), side);
-        palette.paint_panel(ui.painter(), foot);
+        paint_panel(ui.painter(), side, palette);
+        paint_panel(ui.painter(), foot, palette);
         if let Some(source) = sources::show(ui, side.shrink(PADDING), self.chosen, shown, controls) {
             self.chosen = source;
             self.leave();

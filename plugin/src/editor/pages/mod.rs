@@ -20,7 +20,7 @@ use crate::editor::controls::{Controls, Said};
 use crate::editor::displays::scope;
 use crate::editor::lamps;
 use crate::editor::theme::layout::Layout;
-use crate::editor::theme::{GAP, PADDING, PATH_HEIGHT, SMALL, TEXT};
+use crate::editor::theme::{GAP, PADDING, PATH_HEIGHT, SMALL, TEXT, paint_panel};
 use crate::editor::widgets::buttons::help_tab;
 use crate::editor::widgets::text::{fitting, line};
 use crate::link::Link;
@@ -114,7 +114,7 @@ impl Pages {
                 self.body.turn_to(part);
             }
         }
-        palette.paint_panel(ui.painter(), layout.part);
+        paint_panel(ui.painter(), layout.part, palette);
         paint_notch(ui, layout.part, middle, controls);
         let inside = layout.part.shrink(PADDING);
         let [head, area] = [inside.with_max_y(inside.top() + HEAD - 4.0), inside.with_min_y(inside.top() + HEAD)];

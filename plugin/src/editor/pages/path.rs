@@ -4,7 +4,7 @@ use super::parts::Part;
 use super::spot::{LAMP, Spot};
 use crate::editor::controls::Controls;
 use crate::editor::lamps;
-use crate::editor::theme::{GAP, SMALL, TEXT};
+use crate::editor::theme::{GAP, SMALL, TEXT, paint_panel};
 use crate::editor::widgets::text;
 use egui::{Rect, Stroke, Ui, pos2, vec2};
 
@@ -43,7 +43,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, chosen: Part, controls: &mut Controls) -
     for (place, (panel, panel_width)) in PATH.iter().zip(widths).enumerate() {
         let height = ROWS as f32 * row_height + 2.0;
         let frame = Rect::from_min_size(pos2(left, rect.top()), vec2(panel_width, height));
-        palette.paint_panel(ui.painter(), frame);
+        paint_panel(ui.painter(), frame, palette);
         if place < PATH.len() - 1 {
             let wire = [frame.right_center(), frame.right_center() + vec2(gap, 0.0)];
             ui.painter().line_segment(wire, Stroke::new(2.0, palette.accent));

@@ -4,7 +4,7 @@ use super::curves;
 use crate::editor::body::face;
 use crate::editor::controls::Controls;
 use crate::editor::lamps;
-use crate::editor::play::stage::Floor;
+use crate::editor::play::stage;
 use crate::editor::routes::Ring;
 use crate::editor::theme::{GAP, KNOB, SMALL};
 use crate::editor::widgets::choice;
@@ -84,7 +84,7 @@ pub(super) fn picture(
             let above = if is_room { 0.0 } else { 0.9 * rect.height() };
             let (frame, floor) = (rect.expand(6.0), rect.with_min_y(rect.top() - above).expand(6.0));
             let painter = painter.with_clip_rect(frame.intersect(painter.clip_rect()));
-            Floor::of(floor, rect, controls).paint(&painter, 0.0, controls);
+            stage::paint(&stage::floor(floor, rect, controls), &painter, 0.0, controls);
             if kind == Space::None {
                 return Some(CHOOSE.to_owned());
             }

@@ -4,7 +4,7 @@ use super::parts::{self, Part};
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::lamps::{self, Lamp};
 use crate::editor::routes::carry;
-use crate::editor::theme::RADIUS;
+use crate::editor::theme::{RADIUS, paint_panel};
 use crate::editor::widgets::{outline, text};
 use egui::{Align2, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
 
@@ -37,7 +37,7 @@ impl Spot {
         let response = ui.interact(rect, Id::unique(("part", part)), Sense::click());
         response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_chosen, part));
         if self.is_tile {
-            palette.paint_panel(ui.painter(), rect);
+            paint_panel(ui.painter(), rect, palette);
         }
         if is_chosen {
             ui.painter().rect(rect, RADIUS, palette.raised, Stroke::new(1.5, palette.accent), StrokeKind::Inside);

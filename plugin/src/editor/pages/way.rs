@@ -9,7 +9,7 @@ use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::displays::scope;
 use crate::editor::lamps::{self, MOVERS};
-use crate::editor::theme::{GAP, SMALL, TEXT};
+use crate::editor::theme::{GAP, SMALL, TEXT, paint_panel};
 use crate::editor::widgets::text::{line, width};
 use egui::{Align2, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use sprung::params::Param;
@@ -171,7 +171,7 @@ impl Way<'_, '_> {
 
     fn keys(&mut self, rect: Rect, shown: &Shown) {
         let palette = self.controls.palette;
-        palette.paint_panel(self.ui.painter(), rect);
+        paint_panel(self.ui.painter(), rect, palette);
         let text = |param: Param| self.controls.text(param.info());
         let is_set = |param: Param| self.controls.value(param.info()) != param.info().default;
         let unison = if is_set(Param::Unison) { format!(" × {}", text(Param::Unison)) } else { String::new() };

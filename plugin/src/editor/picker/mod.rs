@@ -7,7 +7,7 @@ mod listing;
 
 use super::controls::{Controls, Hint, Pick, Said};
 use super::drops;
-use super::theme::{GAP, PADDING, SMALL, TEXT, font};
+use super::theme::{GAP, PADDING, SMALL, TEXT, font, paint_panel};
 use super::widgets::buttons::{Look, button};
 use super::widgets::list;
 use super::widgets::progress::PAUSE;
@@ -141,7 +141,7 @@ impl Picker {
         controls: &mut Controls,
     ) -> Option<Picked> {
         let palette = controls.palette;
-        palette.paint_panel(ui.painter(), rect);
+        paint_panel(ui.painter(), rect, palette);
         let inner = rect.shrink(PADDING);
         let focused = ui.memory(|memory| memory.focused());
         if std::mem::take(&mut self.is_new) {

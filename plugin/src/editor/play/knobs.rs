@@ -8,13 +8,13 @@ use crate::editor::motion::sources;
 use crate::editor::pages::sections::ADDED;
 use crate::editor::routes::Ring;
 use crate::editor::routes::list::effects;
-use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, SMALL};
+use crate::editor::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, SMALL, paint_panel};
 use crate::editor::widgets::knob;
 use crate::editor::widgets::text::line;
 use egui::{Align2, Id, Rect, Role, ScrollArea, Sense, Shape, Stroke, Ui, UiBuilder, Vec2, WidgetInfo, vec2};
 use sprung::params::{PARAMS, Param, ParamInfo};
 use sprung::patch::routes::Source;
-use sprung_picture::play::ESSENTIALS;
+use sprung_picture::play::{ESSENTIALS, needs_space};
 use std::f32::consts::TAU;
 
 /// What players move most, to be dragged to these knobs or, by way of a tab, to any.
@@ -37,7 +37,7 @@ pub(super) fn cell_height(side: f32) -> f32 {
 /// Shows the macros that have names, the essential knobs and the gain, with a title so high and faces so wide.
 pub(super) fn show(ui: &mut Ui, rect: Rect, [title, side]: [f32; 2], shown: &Shown, controls: &mut Controls) {
     let palette = controls.palette;
-    palette.paint_panel(ui.painter(), rect);
+    paint_panel(ui.painter(), rect, palette);
     // Each sound of a kit has others.
     let naming = controls.interaction.naming.as_ref().map(|naming| naming.info.param);
     let has_name = |info: &ParamInfo| shown.guide().macro_name(info.id).is_some();
@@ -49,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, [title, side]: [f32; 2], shown: &Sho
         .collect();
     let next = next(shown, controls);
     let has_space = controls.value(Param::Space.info()) > 0.0;
-    let matters = |param: &Param| has_space || !matches!(param, Param::SpaceMix | Param::SpaceSize);
+    let matters = |param: &Param| has_space || !needs_space(*param);
     let essentials = ESSENTIALS.into_iter().filter(|(param, _)| matters(param));
     let essentials = essentials.map(|(param, name)| (param.info(), name.to_owned()));
     let gain = (Param::Gain.info(), "Gain".to_owned());

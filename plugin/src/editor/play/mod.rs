@@ -12,12 +12,11 @@ use crate::editor::controls::Controls;
 use crate::editor::controls::shown::Shown;
 use crate::editor::keyboard::audition::{Audition, VELOCITY};
 use crate::editor::motion::sources;
-use crate::editor::theme::{GAP, KNOB, PADDING, RADIUS, SMALL, TITLE_HEIGHT};
+use crate::editor::theme::{GAP, KNOB, PADDING, RADIUS, SMALL, TITLE_HEIGHT, paint_panel};
 use crate::editor::widgets::outline;
 use crate::editor::widgets::text::line;
 use crate::link::Link;
 use egui::{Align2, Rect, Sense, Ui, vec2};
-use stage::Floor;
 
 /// The smallest height of a page with titles and tiles: 354 for those of bodies and materials with the button below them, 22 for the foot,
 /// and the rest for knobs and gaps.
@@ -68,15 +67,15 @@ impl PlayPage {
         let (now, link) = (ui.input(|input| input.time), controls.params.link());
         self.audition.follow_time(now, link);
         self.was_played |= !controls.notes.is_empty();
-        controls.palette.paint_panel(ui.painter(), stage);
+        paint_panel(ui.painter(), stage, controls.palette);
         let [left, right] = SIDES[usize::from(!is_tall)];
         let inner = stage.shrink(PADDING);
         let foot = inner.with_min_y(inner.bottom() - FOOT);
         // Below the picture, not on it, stands what is written.
         let floor = stage.with_max_y(foot.top() - CAPTION);
         let middle = inner.with_min_x(inner.left() + left + GAP).with_max_x(inner.right() - right - GAP);
-        let ground = Floor::of(floor, middle, controls);
-        ground.paint(ui.painter(), level, controls);
+        let ground = stage::floor(floor, middle, controls);
+        stage::paint(&ground, ui.painter(), level, controls);
         let caption = self.stand(ui, middle.with_max_y(floor.bottom()), shown, energies, controls);
         let under = middle.with_min_y(floor.bottom()).with_max_y(foot.top());
         let routes = &shown.patch().routes;
@@ -86,7 +85,7 @@ impl PlayPage {
         } else {
             hands::show(ui, under, Align2::CENTER_CENTER, routes, controls);
         }
-        let touched = ground.touch(ui, self.body.bounds(), controls);
+        let touched = stage::touch(&ground, ui, self.body.bounds(), controls);
         if touched.is_dragged {
             self.audition.repeat(shown.guide().home, now, link);
         } else if touched.is_clicked {

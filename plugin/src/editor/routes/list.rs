@@ -3,7 +3,7 @@
 use super::row::{self, About, Parts, verbs};
 use super::{matrix, typed};
 use crate::editor::controls::Controls;
-use crate::editor::theme::{GAP, PADDING, SMALL, TITLE_HEIGHT};
+use crate::editor::theme::{GAP, PADDING, SMALL, TITLE_HEIGHT, paint_panel};
 use crate::editor::widgets::buttons::tab;
 use crate::editor::widgets::text;
 use egui::{Align2, Rect, ScrollArea, Sense, Ui, UiBuilder, vec2};
@@ -51,7 +51,7 @@ impl List {
     pub(in crate::editor) fn show(&mut self, ui: &mut Ui, rect: Rect, about: About, controls: &mut Controls) {
         let (patch, _, is_editable) = about;
         let palette = controls.palette;
-        palette.paint_panel(ui.painter(), rect);
+        paint_panel(ui.painter(), rect, palette);
         let inner = rect.shrink2(vec2(PADDING, 0.0));
         let title = Rect::from_min_size(inner.min + vec2(0.0, 2.0), vec2(inner.width(), TITLE_HEIGHT - 2.0));
         // The button of the manual is at the right end.

@@ -6,7 +6,7 @@ use crate::editor::body::face;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::host::extent;
 use crate::editor::routes::carry;
-use crate::editor::theme::{BRAND, GAP, SMALL, TEXT, Theme, ZOOMS};
+use crate::editor::theme::{BRAND, GAP, SMALL, TEXT, Theme, ZOOMS, paint_panel};
 use crate::editor::widgets::buttons::{Look, button, tab};
 use crate::editor::widgets::star;
 use crate::editor::widgets::text::{line, width};
@@ -210,7 +210,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
 /// The name of the sound between arrows to the previous and the next one.
 fn name_field(ui: &Ui, rect: Rect, header: &Header, is_narrow: bool, controls: &mut Controls) -> Option<Request> {
     let palette = controls.palette;
-    palette.paint_panel(ui.painter(), rect);
+    paint_panel(ui.painter(), rect, palette);
     let arrow = vec2(24.0, rect.height());
     let previous = Rect::from_min_size(rect.min, arrow);
     let following = Rect::from_min_size(rect.right_top() - vec2(arrow.x, 0.0), arrow);

@@ -161,13 +161,10 @@ fn sounds(page: &mut Page) -> Result<(), String> {
     heard(page, "a key of the computer")?;
     page.click("#body");
     heard(page, "a body that is clicked")?;
-    let at = page.value("(r => [r.x + r.width / 2, r.y + r.height / 2, 0.3 * r.width])(document.querySelector('#plane').getBoundingClientRect())");
-    let number = |place: usize| at[place].as_f64().unwrap_or(0.0);
-    for (kind, pull) in [("mousePressed", 0.0), ("mouseMoved", 1.0), ("mouseReleased", 1.0)] {
-        let (x, y) = (number(0) + pull * number(2), number(1));
-        let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1 });
-        page.call("Input.dispatchMouseEvent", event);
-    }
+    drag(
+        page,
+        "(r => [r.x + r.width / 2, r.y + r.height / 2, 0.3 * r.width, 0])(document.querySelector('#plane').getBoundingClientRect())",
+    );
     heard(page, "a mass that is pulled")?;
     until(page, "sprung.state.take.filter((event) => event.message).length === 8")?;
     midi::plays(page, heard)?;
@@ -182,9 +179,15 @@ fn sounds(page: &mut Page) -> Result<(), String> {
     page.click("#body");
     until(page, "sprung.state.take.some((event) => event.strike?.length === 2)")?;
     println!("a body is struck elsewhere");
+    drag(
+        page,
+        "(r => { const [x, y] = sprung.body.places().ear; return [r.x + x, r.y + y, 40, 10]; })(document.querySelector('#body').getBoundingClientRect())",
+    );
+    until(page, "sprung.state.take.some((event) => event.listen?.length === 2)")?;
+    println!("its ear is moved");
     // Each kind of chip makes its event, and is heard.
     for (chip, event) in [
-        ("#exciters .chip:nth-child(2)", "event.param !== undefined && event.position > 0"),
+        ("#exciters .mover:nth-child(2) .chip", "event.param !== undefined && event.position > 0"),
         ("#spaces .chip:nth-child(2)", "event.param !== undefined && event.position > 0"),
         ("#models .chip:nth-child(4)", "event.make?.[0] === 3"),
         ("#materials .chip:nth-child(5)", "event.make?.[1] === 4"),
@@ -196,12 +199,39 @@ fn sounds(page: &mut Page) -> Result<(), String> {
         until(page, &format!("document.querySelector('{chip}').ariaPressed === 'true'"))?;
     }
     println!("what moves it, what it stands on, what it is and is made of are chosen by a click");
+    page.value("window.before = sprung.state.take.length");
+    drag(
+        page,
+        "(r => [r.x + 150, r.y + sprung.body.places().far + 40, 0, -60])(document.querySelector('#body').getBoundingClientRect())",
+    );
+    until(page, "sprung.state.take.slice(before).filter((event) => event.position > 0.25).length > 0")?;
+    println!("the floor is dragged");
+    let colours = ["dark", "light", "high-contrast"].map(|theme| {
+        page.value(&format!(
+            "(select => {{ select.value = '{theme}'; select.onchange(); return getComputedStyle(document.body).backgroundColor; }})\
+             (document.querySelector('#theme'))"
+        ))
+    });
+    if colours != ["rgb(19, 19, 24)", "rgb(228, 225, 218)", "rgb(0, 0, 0)"].map(Value::from) {
+        return Err(format!("the themes’ grounds are {colours:?}"));
+    }
     let peak = page.value(
         "import('./wav.js').then(({renderTake}) => Math.max(...renderTake(sprung.module, sprung.state.take, 48000, 2)[0].map((block) => Math.max(...block))))",
     );
     match peak.as_f64() {
         Some(peak) if peak > 0.01 && peak < 1.0 => Ok(()),
         _ => Err(format!("the take’s peak is {peak}")),
+    }
+}
+
+/// Drags the mouse in three steps, by the numbers of an expression: from where, and by how much.
+fn drag(page: &mut Page, expression: &str) {
+    let way = page.value(expression);
+    let number = |place: usize| way[place].as_f64().unwrap_or(f64::NAN);
+    for (kind, share) in [("mousePressed", 0.0), ("mouseMoved", 0.5), ("mouseMoved", 1.0), ("mouseReleased", 1.0)] {
+        let [x, y] = [0, 1].map(|axis| number(axis) + share * number(axis + 2));
+        let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1 });
+        page.call("Input.dispatchMouseEvent", event);
     }
 }
 
@@ -246,7 +276,7 @@ fn is_measured(found: &Value) -> bool {
 fn take_picture(page: &mut Page, path: &Path) -> Result<(), String> {
     page.call(
         "Emulation.setDeviceMetricsOverride",
-        json!({ "width": 1160, "height": 1160, "deviceScaleFactor": 1, "mobile": false }),
+        json!({ "width": 1160, "height": 1040, "deviceScaleFactor": 1, "mobile": false }),
     );
     let dark = json!({ "features": [{ "name": "prefers-color-scheme", "value": "dark" }] });
     page.call("Emulation.setEmulatedMedia", dark);
