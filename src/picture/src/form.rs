@@ -6,6 +6,9 @@ use emath::{Pos2, Rect, Vec2, vec2};
 use sprung::sound::bodies::{Model, Point};
 use std::f32::consts::TAU;
 
+/// How far above and below a line its places are still pointed at, in pixels: a string is thin.
+const AROUND_LINE: f32 = 60.0;
+
 /// The form of a body. The coordinates of its points are those of [`Model`]: `x` and `y` from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
@@ -233,9 +236,9 @@ impl Form {
         let view = self.view(rect);
         let far = |point: &Point| {
             let off = view.at(self.in_space(*point, 0.0)) - place;
-            // Along a line, only the distance in the line's direction counts.
+            // Near a line, only the distance in its direction counts.
             if self.is_line() {
-                vec2(off.x, (off.y.abs() - rect.height() / 2.0).max(0.0)).length()
+                vec2(off.x, (off.y.abs() - (rect.height() / 2.0).min(AROUND_LINE)).max(0.0)).length()
             } else {
                 off.length()
             }

@@ -65,6 +65,11 @@ pub fn suggested_body(family: Option<Family>, tags: &[String]) -> Body {
     body
 }
 
+/// What a body is and is made of.
+fn named(body: &Body) -> String {
+    format!("{} of {}", model_name(body.model.id()), body.material.id.replace('_', " "))
+}
+
 /// The same origin; for a table of modes, the body that it is drawn as.
 pub fn or_suggested(origin: &Origin, family: Option<Family>, tags: &[String]) -> Origin {
     match origin {
@@ -89,14 +94,14 @@ impl BodyShape {
         let is_mass = origin.body().is_some_and(|body| body.model == Model::Mass);
         let origin = origin.with_places();
         let (body, near, caption) = match &origin {
-            Origin::FromBody(body) => ((**body).clone(), NEAR[0], model_name(body.model.id())),
+            Origin::FromBody(body) => ((**body).clone(), NEAR[0], named(body)),
             Origin::FromPair(pair) => {
-                let caption = format!("{}, joined to a second body", model_name(pair.first.model.id()));
+                let caption = format!("{}, joined to a second body", named(&pair.first));
                 (pair.first.clone(), NEAR[0], caption)
             }
             Origin::Table => {
                 let body = suggested_body(family, tags);
-                let what = if is_mass { "a mass" } else { "a table of modes" };
+                let what = if is_mass { "a mass" } else { "its modes, without a body" };
                 let caption = format!("{what}, drawn as {}", with_article(&model_name(body.model.id())));
                 (body, NEAR[1], caption)
             }
@@ -239,6 +244,9 @@ mod tests {
         }
         let bell = Preset::find("Church Bell").unwrap();
         let shape = BodyShape::of(&bell.patch.modes, None, &[]);
-        assert_eq!((shape.figure.form, shape.caption.as_str()), (Form::Bell, "church bell, joined to a second body"));
+        assert_eq!(
+            (shape.figure.form, shape.caption.as_str()),
+            (Form::Bell, "church bell of bronze, joined to a second body")
+        );
     }
 }

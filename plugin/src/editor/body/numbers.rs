@@ -85,7 +85,7 @@ const ABOUT: [(&str, &str, &str); 41] = [
 ];
 
 /// The titles of numbers that belong together.
-pub(super) const GROUPS: [&str; 5] = ["", "Size", "Material", "Places", "Modes"];
+pub(super) const GROUPS: [&str; 5] = ["", "Size and pitch", "Material", "Places", "Modes"];
 
 impl Part {
     pub(super) fn body(self, origin: &Origin) -> Option<&Body> {
@@ -156,8 +156,10 @@ impl Number {
         match self.name {
             "damping" if self.range[0] == 0.0 => "",
             "stiffness" | "mass" | "struck" | "heard" | "polarisation" | "lowest" | "highest" => "",
-            "frequency" | "length" | "thickness" | "tension" | "aspect" | "truncation" | "slenderness" => "Size",
-            "head_radius" | "head_density" | "kettle_volume" => "Size",
+            "frequency" | "length" | "thickness" | "tension" | "aspect" | "truncation" | "slenderness" => {
+                "Size and pitch"
+            }
+            "head_radius" | "head_density" | "kettle_volume" => "Size and pitch",
             "material_density" | "young" | "poisson" | "loss_b0" | "loss_b1" | "loss_power" | "damping" => "Material",
             "strike" | "strike_y" | "pickup" | "pickup_y" | "joint" | "joint_y" => "Places",
             _ => "Modes",

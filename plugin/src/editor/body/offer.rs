@@ -9,8 +9,10 @@ use crate::editor::widgets::text::paragraph;
 use egui::{Rect, Shape, Ui};
 use sprung_picture::{Origin, model_name, or_suggested, suggested_body, with_article};
 
+/// What stands in place of a body's name where there is none.
+pub(crate) const NO_BODY: &str = "modes alone";
 /// What comes of a body for a table of modes.
-pub(crate) const TAKES: &str = "A body of it takes the place of the table of modes.";
+pub(crate) const TAKES: &str = "What was fixed becomes a body, to be struck elsewhere and made of anything.";
 /// Widest button.
 const WIDEST: f32 = 188.0;
 

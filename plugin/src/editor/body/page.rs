@@ -2,7 +2,7 @@
 
 use super::edit::BodyEdit;
 use super::numbers::{GROUPS, Number, Part};
-use super::offer::{TAKES, offer, offer_pad, suggestion};
+use super::offer::{NO_BODY, TAKES, offer, offer_pad, suggestion};
 use super::origin::OriginShown;
 use super::pick::{BETWEEN, Tiles, discs};
 use crate::editor::controls::Controls;
@@ -37,10 +37,9 @@ const CELL: [f32; 2] = [88.0, number::HEIGHT];
 const WIDEST: f32 = 124.0;
 /// Shown in place of a model if there is none.
 const NONE: &str = "none";
-const TABLE: &str = "a table of modes";
 /// What such a table lacks.
-const LACKS: &str = "This sound is a table of modes, typed in or fitted to a recording, and knows nothing of a body. Choose a \
-                     model: its modes take the table’s place.";
+const LACKS: &str = "This sound’s modes are fixed: typed in, or fitted to a recording. Choose a model, and it has a body \
+                     instead.";
 
 /// The page's state.
 #[derive(Default)]
@@ -261,7 +260,7 @@ impl BodyPage {
         }
         let body = self.part.body(origin);
         let is_first = self.part == Part::First;
-        let none = if is_first { TABLE } else { NONE };
+        let none = if is_first { NO_BODY } else { NONE };
         let first = if is_first { None } else { Some(NONE.to_owned()) };
         let models = first.into_iter().chain(Model::ALL.iter().map(|(id, _)| model_name(id)));
         let names: Vec<String> = models.collect();

@@ -14,7 +14,7 @@ mod trying;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint, Pick, Said};
 use crate::editor::keyboard::audition::Audition;
-use crate::editor::theme::{GAP, PADDING};
+use crate::editor::theme::{GAP, PADDING, paint_panel};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::progress::{Face, PAUSE, paint};
 use crate::files::read;
@@ -130,7 +130,7 @@ impl Browser {
     ) -> Option<(Said, bool)> {
         let palette = controls.palette;
         let mut sounds = self.sounds.take().unwrap_or_else(|| Sounds::read(self.library.clone()));
-        palette.paint_panel(ui.painter(), rect);
+        paint_panel(ui.painter(), rect, palette);
         let inner = rect.shrink(PADDING);
         let details_width = if rect.width() < 900.0 { 190.0 } else { SIDE[1] };
         let categories = Rect::from_min_max(inner.min, pos2(inner.left() + SIDE[0], inner.bottom()));
@@ -154,7 +154,9 @@ impl Browser {
         let (tags, rows) = rest.split_top_bottom_at_y(rest.top() + tags::height(list.height() < LOW));
         let import = search.with_max_y(search.top() + 22.0).with_min_x(search.right() - IMPORT);
         let Found { sounds: found, says } = self.finding.find(&sounds);
-        let command = keys::asked(ui, search_field(), &self.finding.words, found.len());
+        // Once a sound has been tried for its words, the search has no use for keys that move in them.
+        let words = if self.tried.as_ref() == Some(&self.finding.words) { "" } else { &self.finding.words };
+        let command = keys::asked(ui, search_field(), words, found.len());
         let count = if says.is_empty() { self.finding.category.counted(found.len()) } else { String::new() };
         let clicks_elsewhere = self.finding.show_search(ui, search.with_max_x(import.left() - 4.0), &count, palette);
         let response = button(ui, import, "Import", "Import files", Look::Plain, palette);

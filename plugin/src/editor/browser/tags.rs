@@ -73,8 +73,10 @@ impl Tags {
             let is_whole = rows == 1;
             let tags: Vec<&str> =
                 all.iter().filter(|(of, _)| is_whole || *of == row).map(|(_, tag)| tag.as_str()).collect();
-            if !is_whole {
+            if !is_whole && !tags.is_empty() {
                 line(ui.painter(), at, Align2::LEFT_CENTER, name, SMALL, palette.muted);
+            }
+            if !is_whole {
                 at.min.x += NAME;
             }
             clicked = self.row(ui, at, name, &tags, palette).or(clicked);

@@ -2,6 +2,7 @@
 
 use crate::loaded::Loaded;
 use crate::params::SprungParams;
+use sprung::internals::library::tags_to_save;
 use sprung::patch::Patch;
 use sprung::preset::{Family, Guide, KitPreset, OwnTuning, Playable, Preset};
 use sprung::sound::{Pad, Sound};
@@ -30,7 +31,12 @@ impl Shown {
     pub(crate) fn new(params: &SprungParams) -> Self {
         // Read first: a sound that is loaded meanwhile is then noticed at the next refresh.
         let loaded = params.loaded();
-        let playable = params.state().playable;
+        let mut playable = params.state().playable;
+        // What was wood is not, once it is made of glass.
+        let tags = tags_to_save(&playable);
+        if let Playable::Preset(preset) = &mut playable {
+            preset.tags = tags;
+        }
         let mut shown = Self { loaded, playable, guide: Guide::default(), sound: 0 };
         match &shown.playable {
             Playable::Preset(preset) => shown.guide = preset.guide.clone(),

@@ -99,7 +99,12 @@ impl Piano {
         let touched = touched.and_then(|place| keys.at(place));
         self.held.follow(touched, controls.params.link());
         if let Some((key, velocity)) = response.hover_pos().and_then(|place| keys.at(place)) {
-            let range = format!("made for {} to {}", note_name(guide.lowest), note_name(guide.highest));
+            let range = match (guide.lowest, guide.highest) {
+                // A kit has pads here and there.
+                (0, 127) if meant >> key & 1 == 0 => "nothing sounds here".to_owned(),
+                (0, 127) => String::new(),
+                (lowest, highest) => format!("made for {} to {}", note_name(lowest), note_name(highest)),
+            };
             let title = format!("{} at velocity {:.0}", note_name(key), velocity * 127.0);
             *controls.hint = Hint::new(title, format!("lower on the key is louder   {range}"));
         }

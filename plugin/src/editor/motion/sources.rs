@@ -86,7 +86,7 @@ fn chip_width(ui: &Ui, (source, name): (Source, &str), shown: &Shown) -> f32 {
 
 /// Shows these sources in a line, as many as there is room for, with what to do with them before; the last ends at the right.
 pub(in crate::editor) fn show_line(ui: &Ui, rect: Rect, sources: &[Source], shown: &Shown, controls: &mut Controls) {
-    let title = if shown.preset().is_some() { DRAG } else { "the sounds have them" };
+    let title = if shown.preset().is_some() { DRAG } else { "of each sound its own" };
     let mut left = rect.left() + width(ui.painter(), title, SMALL) + 3.0 * SPACE;
     let mut places = Vec::new();
     for source in sources {

@@ -1,5 +1,6 @@
 //! What the way of the sound shows of its bodies: a picture and a line of words for each, and how they are joined.
 
+use crate::editor::body::offer::NO_BODY;
 use crate::editor::controls::shown::{Shown, Subject};
 use sprung::internals::editor::LINK_KINDS;
 use sprung::sound::bodies::Body;
@@ -31,7 +32,7 @@ impl Bodies {
         let modes = &shown.patch().modes;
         let origin = Origin::of(modes);
         let figure = small_figure(modes, shown.family(), shown.tags());
-        let about = origin.body().map_or(["a table of modes".to_owned(), String::new()], about);
+        let about = origin.body().map_or([NO_BODY.to_owned(), String::new()], about);
         let pair = origin.pair();
         let second = pair.map(|pair| {
             let [model, material] = about_second(&pair.second);

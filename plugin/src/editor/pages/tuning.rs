@@ -19,7 +19,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 /// Width of the description of the scale.
-const SIDE: f32 = 188.0;
+const SIDE: f32 = 216.0;
 /// Largest file that is read, in bytes.
 const LARGEST: u64 = 1 << 20;
 /// Twelve equal steps, for a mapping without a scale of its own.

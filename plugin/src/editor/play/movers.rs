@@ -1,4 +1,4 @@
-//! What moves the body, as tiles: a click lets one of them act alone, its lamp adds it to the others.
+//! What moves the body, as tiles: a click lets one that is off act alone, its lamp adds it to the others.
 
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::lamps::{Lamp, MOVERS};
@@ -7,7 +7,7 @@ use crate::editor::widgets::mover;
 use crate::editor::widgets::text::line;
 use egui::{Align2, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 
-/// Shows the tiles. Returns whether another exciter acts alone now.
+/// Shows the tiles. Returns whether one was clicked.
 pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) -> bool {
     let palette = controls.palette;
     let top = if is_tall { 18.0 } else { 0.0 };
@@ -17,17 +17,26 @@ pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) 
     }
     let room = (rect.height() - top - 26.0) / MOVERS.len() as f32 - GAP / 2.0;
     let height = room.min(46.0);
-    let mut alone = None;
+    let mut is_clicked = false;
     for (place, mover) in MOVERS.iter().enumerate() {
         let Lamp { section: name, param, help, .. } = *mover;
         let corner = rect.min + vec2(0.0, top + place as f32 * (height + GAP / 2.0));
         let tile = Rect::from_min_size(corner, vec2(rect.width(), height));
         let is_on = mover.is_on(controls);
         let response = ui.interact(tile, Id::unique(("mover", name)), Sense::click());
-        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_on, format!("{name} alone")));
+        response.widget_info(|| {
+            WidgetInfo::selected(
+                Role::Button,
+                true,
+                is_on,
+                if is_on { format!("Hear {name}") } else { format!("{name} alone") },
+            )
+        });
         let lamp = Rect::from_center_size(tile.right_top() + vec2(-9.0, 0.5 * height.min(20.0)), vec2(18.0, 20.0));
-        if response.clicked() {
-            alone = Some(mover);
+        // One that acts already is only heard: whoever clicks it does not mean to lose the others.
+        is_clicked |= response.clicked();
+        if response.clicked() && !is_on {
+            act_alone(mover, controls);
         }
         let is_hovered = response.hovered();
         let edge = match (is_on, response.has_focus()) {
@@ -45,13 +54,11 @@ pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) 
         line(ui.painter(), tile.with_min_x(tile.left() + wide + 6.0), Align2::LEFT_CENTER, name, TEXT, text);
         let is_hovered = mover.show(ui, lamp, controls).hovered() || is_hovered;
         if is_hovered {
-            *controls.hint = Hint::new(name, format!("{help} Click: it alone. Its lamp adds it to the others."));
+            let deeds = if is_on { "Click: hear it. Its lamp: off." } else { "Click: it alone. Its lamp: it too." };
+            *controls.hint = Hint::new(name, format!("{help} {deeds}"));
         }
     }
-    if let Some(mover) = alone {
-        act_alone(mover, controls);
-    }
-    alone.is_some()
+    is_clicked
 }
 
 /// Lets one exciter act and no other, as one step that can be undone.

@@ -1,7 +1,7 @@
 //! What the body is and what it is made of, each chosen by its picture.
 
 use crate::editor::body::edit::BodyEdit;
-use crate::editor::body::offer::{TAKES, suggestion};
+use crate::editor::body::offer::{NO_BODY, TAKES, suggestion};
 use crate::editor::body::origin::OriginShown;
 use crate::editor::body::pick::{BETWEEN, Tiles, discs};
 use crate::editor::controls::shown::{Shown, Subject};
@@ -97,17 +97,8 @@ impl Things {
         picked = model_field(ui, next(LIST), origin, controls).or(picked);
         if is_tall {
             next(2.0);
-            let title = if now.is_some() { "What it is made of" } else { "Modes alone, of no material yet" };
+            let title = if now.is_some() { "What it is made of" } else { "What it is to be made of" };
             line(ui.painter(), next(14.0), Align2::LEFT_CENTER, title, SMALL, palette.muted);
-        }
-        if now.is_none() {
-            let response = button(ui, next(LIST), &deed, &deed, Look::Main, palette);
-            if response.hovered() {
-                *controls.hint = Hint::new(&deed, "Of the material below that is clicked, or of the usual one.");
-            }
-            if response.clicked() {
-                picked = Some((suggested.clone(), deed));
-            }
         }
         let chosen = if is_tall {
             let pitch = rect.width() / columns_of_discs as f32;
@@ -117,7 +108,18 @@ impl Things {
             scrolling(ui, next(DISC), "materials", width, |ui, at| materials(ui, at, DISC, DISCS.len(), controls))
         };
         self.scrolled = Some(shown.subject());
-        material_field(ui, next(LIST), now, &suggested, controls).or(chosen).or(picked)
+        let place = next(LIST);
+        if let Some(now) = now {
+            return material_field(ui, place, now, origin, controls).or(chosen).or(picked);
+        }
+        let response = button(ui, place, &deed, &deed, Look::Main, palette);
+        if response.hovered() {
+            *controls.hint = Hint::new(&deed, "Of its usual material, or of the one above that is clicked.");
+        }
+        if response.clicked() {
+            picked = Some((suggested, deed));
+        }
+        chosen.or(picked)
     }
 }
 
@@ -136,15 +138,15 @@ fn scrolling(ui: &mut Ui, rect: Rect, name: &str, width: f32, show: impl FnOnce(
 /// The list of all models.
 fn model_field(ui: &Ui, rect: Rect, origin: &Origin, controls: &Controls) -> Picked {
     let names: Vec<String> = Model::ALL.iter().map(|(id, _)| model_name(id)).collect();
-    let now = origin.body().map_or("a table of modes".to_owned(), |body| model_name(body.model.id()));
+    let now = origin.body().map_or(NO_BODY.to_owned(), |body| model_name(body.model.id()));
     let picked = field(ui, rect, "All bodies", &now, &names, controls)?;
     let (_, model) = &Model::ALL[picked];
     Some((origin.with_model(false, Some(model)), format!("model {}", names[picked])))
 }
 
-/// The list of all materials, of which the body gets one; a table of modes has none now.
-fn material_field(ui: &Ui, rect: Rect, now: Option<&str>, origin: &Origin, controls: &Controls) -> Picked {
-    let now = now.map_or("choose a material".to_owned(), |id| id.replace('_', " "));
+/// The list of all materials, of which the body gets one.
+fn material_field(ui: &Ui, rect: Rect, now: &str, origin: &Origin, controls: &Controls) -> Picked {
+    let now = now.replace('_', " ");
     let names: Vec<String> = MATERIALS.iter().map(|material| material.id.replace('_', " ")).collect();
     let picked = field(ui, rect, "All materials", &now, &names, controls)?;
     made_of(origin, MATERIALS[picked].id)

@@ -75,6 +75,8 @@ pub(super) struct Ring {
     pub(super) ranges: Vec<[f32; 2]>,
     /// The modulated position in each sounding note, the newest note first.
     pub(super) marks: Vec<f32>,
+    /// What moves it and how far, in words; empty for nothing.
+    pub(super) movers: String,
 }
 
 impl Ring {
@@ -89,10 +91,14 @@ impl Ring {
             let from = if goes_both_ways(&route) { position - amount } else { position };
             [from, position + amount].map(|end| end.clamp(0.0, 1.0))
         };
-        let these = routes.iter().filter(|(_, route)| route.destination == info.param);
-        let ranges = these.map(range).filter(|[from, to]| from != to).collect();
+        let these = || routes.iter().filter(|(_, route)| route.destination == info.param);
+        let ranges = these().map(range).filter(|[from, to]| from != to).collect();
+        let mover = |(place, route): (usize, Route)| {
+            format!("{} {}", source_name(route.source, &Guide::default()), controls.text(amount_param(place).info()))
+        };
+        let movers = these().map(mover).collect::<Vec<_>>().join(", ");
         let marks = controls.modulated(info).map(|value| info.normalise(value) as f32).collect();
-        Self { ranges, marks }
+        Self { ranges, marks, movers }
     }
 }
 
@@ -210,7 +216,8 @@ fn add(route: Route, amount: f32, controls: &mut Controls) -> Said {
     let name = source_name(route.source, &preset.guide);
     let is_this = |other: &Route| Route { response: route.response, ..*other } == route;
     if let Some((place, _)) = routes.iter().find(|(_, other)| is_this(other)) {
-        return Ok(format!("{name} moves {} already: route {}", info.name, place + 1));
+        let by = controls.text(amount_param(place).info());
+        return Ok(format!("{name} moves {} already, by {by}: rest on the knob with it to change that", info.name));
     }
     if !route.is_possible() {
         return Err(format!("{name} is each note’s own, and {} is of all notes", info.name));

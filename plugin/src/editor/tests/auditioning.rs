@@ -103,6 +103,27 @@ fn left_and_right_belong_to_the_words_and_space_plays_again_where_there_are_none
 }
 
 #[test]
+fn after_a_click_the_keys_are_those_of_the_list_although_words_are_searched_for() {
+    let mut stage = stage("Church Bell", SIZE, 1.0, Theme::Dark);
+    let mut touches = stage.params.link().connect(48_000.0);
+    let mut strikes =
+        || std::iter::from_fn(|| touches.pop().ok()).filter(|touch| matches!(touch, Touch::Down { .. })).count();
+    stage.button("Browse");
+    stage.type_text("marimba");
+    let names = stage.names();
+    let at = stage.harness.get_by_role_and_label(Role::ListItem, &names[1]).rect().center();
+    stage.click(at);
+    assert_eq!((stage.params.name(), strikes()), (names[1].clone(), 1));
+    stage.harness.event(egui::Event::Text(" ".to_owned()));
+    stage.press_key(Key::Space);
+    assert_eq!((stage.names().len(), strikes()), (names.len(), 1), "Space plays it again, and is no word");
+    stage.press_key(Key::ArrowRight);
+    assert_eq!(stage.params.name(), names[2]);
+    stage.press_key(Key::Enter);
+    assert!(!stage.is_browsing() && stage.params.name() == names[2]);
+}
+
+#[test]
 fn tried_sounds_are_one_step_which_escape_takes_back() {
     for is_kept in [true, false] {
         let mut stage = stage("Church Bell", SIZE, 1.0, Theme::Dark);

@@ -119,7 +119,7 @@ fn a_pad_is_edited_and_put_back_and_each_is_one_step() {
     let knob = stage.at("Mallet hardness");
     stage.drag(knob, vec2(0.0, -22.0), Modifiers::NONE);
     stage.tab("Play");
-    stage.button("Noise alone");
+    stage.button("Bow alone");
     let changed = stage.params.state();
     assert!(changed.values != alone.values && changed.pad.is_some());
     // It is kept in the project.

@@ -51,12 +51,13 @@ fn what_can_be_undone_and_what_is_not_saved_outlives_the_window() {
     let before = stage.params.state();
     stage.button("Next sound");
     let loaded = stage.params.state();
-    stage.harness.get_by_label("Noise alone").click();
+    stage.harness.get_by_label("Bow alone").click();
     stage.harness.run_steps(3);
     let is_marked = |stage: &Stage| stage.paints(&format!("{} *", stage.params.name()));
     assert!(is_marked(&stage) && stage.params.state() != loaded);
+    stage.button("Kit");
     let mut stage = stage.reopened(|_| ());
-    assert!(is_marked(&stage));
+    assert!(is_marked(&stage) && stage.paints("Make a kit"), "its page, too");
     stage.button("Undo");
     assert!(stage.params.state() == loaded && !is_marked(&stage));
     stage.button("Undo");

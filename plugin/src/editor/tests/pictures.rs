@@ -42,7 +42,7 @@ impl Stage {
         let Self { params, host, harness, folder, past } = self;
         drop(harness);
         meanwhile(&params);
-        let harness = open(&params, &host, folder.path(), &past, Face::Play, (SIZE, 1.0));
+        let harness = open(&params, &host, folder.path(), &past, None, (SIZE, 1.0));
         Self { params, host, harness, folder, past }
     }
 }
@@ -70,7 +70,7 @@ pub(super) fn facing_on(
     view.theme = theme;
     params.load(params.suited(State::new(Playable::find(sound).unwrap(), seed, view)).into());
     let (folder, past) = (tempfile::tempdir().unwrap(), Past::default());
-    let harness = open(&params, &host, folder.path(), &past, face, (size, scale));
+    let harness = open(&params, &host, folder.path(), &past, Some(face), (size, scale));
     Stage { params, host, harness, folder, past }
 }
 
@@ -79,13 +79,13 @@ fn open(
     host: &Arc<FakeHost>,
     library: &Path,
     past: &Past,
-    face: Face,
+    face: Option<Face>,
     (size, scale): ([u32; 2], f32),
 ) -> Harness<'static> {
     let mut window = Window::new(params.clone(), Some(Library::at(library)), past.clone());
     let context = host.context();
     window.open(context.clone());
-    window.turn_to(face);
+    face.into_iter().for_each(|face| window.turn_to(face));
     let shown = params.clone();
     let mut harness = Harness::builder()
         .with_size(vec2(size[0] as f32, size[1] as f32))

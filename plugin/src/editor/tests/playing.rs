@@ -167,6 +167,10 @@ fn an_exciter_acts_alone_and_its_lamp_adds_it() {
     assert_eq!(band.strikes(), 1);
     band.click(Role::CheckBox, "Mallet");
     assert!(band.value(Param::BowLevel) > silent && band.value(Param::MalletLevel) > silent);
+    // What acts already is only heard.
+    band.click(Role::Button, "Hear Mallet");
+    assert!(band.value(Param::BowLevel) > silent && band.value(Param::MalletLevel) > silent);
+    assert_eq!(band.strikes(), 1);
     band.undo();
     band.undo();
     assert!(band.value(Param::BowLevel) == silent && band.value(Param::MalletLevel) > silent);

@@ -103,6 +103,7 @@ impl Drop for Window {
         }
         self.history.end("the last change", &self.params);
         self.versions.rest();
-        *lock(&self.past.0) = Some((take(&mut self.history), take(&mut self.versions), self.loads));
+        let steps = (take(&mut self.history), take(&mut self.versions), self.loads);
+        *lock(&self.past.0) = (self.face, Some(steps));
     }
 }

@@ -49,6 +49,7 @@ use sprung::internals::library::Library;
 use status::{Load, StatusLine};
 use std::collections::BTreeSet;
 use std::hash::{BuildHasher as _, RandomState};
+use std::mem::take;
 use std::sync::{Arc, Mutex};
 use versions::Versions;
 
@@ -65,10 +66,10 @@ enum Over {
     Devices,
 }
 
-/// What a window leaves to the next one when it is closed: the steps that can be undone, the two versions of the sound, and how many
-/// states the host had loaded.
+/// What a window leaves to the next one when it is closed: its face; and the steps that can be undone, the two versions of the sound, and
+/// how many states the host had loaded.
 #[derive(Clone, Default)]
-pub(super) struct Past(Arc<Mutex<Option<(History, Versions, u64)>>>);
+pub(super) struct Past(Arc<Mutex<(Face, Option<(History, Versions, u64)>)>>);
 
 /// An open window.
 pub(super) struct Window {
@@ -134,8 +135,8 @@ impl Window {
     pub(super) fn new(params: Arc<SprungParams>, library: Option<Library>, past: Past) -> Self {
         let shown = Shown::new(&params);
         let zoom = extent::factor(params.view());
-        let (history, versions, loads) = lock(&past.0)
-            .take()
+        let (face, steps) = take(&mut *lock(&past.0));
+        let (history, versions, loads) = steps
             .filter(|(.., loads)| *loads == params.loads())
             .unwrap_or_else(|| (History::default(), Versions::default(), params.loads()));
         Self {
@@ -157,7 +158,7 @@ impl Window {
             seed: RandomState::new().hash_one(0_u8),
             focus: Focus::default(),
             reach: Reach::default(),
-            face: Face::default(),
+            face,
             play: PlayPage::default(),
             pages: Pages::default(),
             motion: MotionPage::default(),

@@ -114,14 +114,17 @@ impl StatusLine {
     }
 }
 
-/// Shows a hint at the pointer, where it is looked for, once that has rested from moving, clicking and turning: it hides what is there.
+/// Shows a hint at the pointer, where it is looked for, once that has rested without a click: it hides what is there.
 fn show_tooltip(ui: &Ui, Hint { title, help }: &Hint) {
-    let (rested, is_down) = ui.input(|input| {
+    let (rested, is_used, is_down) = ui.input(|input| {
         let pointer = &input.pointer;
-        let clicked = pointer.time_since_last_click().min(input.time_since_last_scroll());
-        (pointer.time_since_last_movement().min(clicked), pointer.any_down())
+        let rested = pointer.time_since_last_movement();
+        let used = pointer.time_since_last_click().min(input.time_since_last_scroll());
+        (rested, used <= rested, pointer.any_down())
     });
-    if rested < REST {
+    // What was clicked or turned has shown what it does, and is not to be covered.
+    if is_used {
+    } else if rested < REST {
         ui.ctx().request_repaint_after(Duration::from_secs_f32(REST - rested));
     } else if !is_down && !Popup::is_any_open(ui.ctx()) && !ui.ctx().egui_wants_keyboard_input() {
         // egui keeps the size of what it showed under an id: another hint would be broken to that width.
