@@ -190,7 +190,7 @@ fn sounds(page: &mut Page) -> Result<(), String> {
         ("#exciters .mover:nth-child(2) .chip", "event.param !== undefined && event.position > 0"),
         ("#spaces .chip:nth-child(2)", "event.param !== undefined && event.position > 0"),
         ("#models .chip:nth-child(4)", "event.make?.[0] === 3"),
-        ("#materials .chip:nth-child(5)", "event.make?.[1] === 4"),
+        ("#materials .disc:nth-child(5)", "event.make?.[1] === 4"),
     ] {
         page.value("window.before = sprung.state.take.length");
         page.click(chip);
