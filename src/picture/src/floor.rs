@@ -30,8 +30,8 @@ impl Floor {
         Self { stage, middle, far: stage.top() + (HORIZON - FARTHER * larger) * stage.height(), ends }
     }
 
-    /// How strongly the waves of a space glow that is mixed in by a share, and how much of that is by the level that sounds; all from 0
-    /// to 1.
+    /// How strongly the waves of a space glow that is mixed in by a share, and how much of that is by the level that sounds, a share of
+    /// the 60 dB below full scale; all from 0 to 1.
     pub fn glow(mix: f32, level: f32) -> [f32; 2] {
         let rest = 0.15 + 0.6 * mix;
         let glow = (level * mix.sqrt()).clamp(0.0, 1.0);

@@ -4,6 +4,10 @@ import { colour, number } from "./theme.js";
 // The velocity of a strike by a pointer at rest, as in the plugin, and how much harder it is for each pixel a millisecond.
 const [AT_REST, PER_SPEED] = [0.7, 0.2];
 const RECENT = 80; // ms
+export const STRIKE = Math.round(127 * AT_REST);
+// An arrow key moves a place by so much of the body’s length or of the way round it.
+const STEP = 0.02;
+const ARROWS = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, -STEP], ArrowDown: [0, STEP] };
 // Movement of the pointer for the whole way of the floor, how far from its far edge and from the ear that is taken hold of, and how far a
 // pointer moves before it drags, in pixels.
 const [TRAVEL, GRIP, EAR, SLOP] = [200, 12, 18, 5];
@@ -11,14 +15,14 @@ const [TRAVEL, GRIP, EAR, SLOP] = [200, 12, 18, 5];
 // How the lines of a body are painted: colour, width, strength.
 const INKS = [["accent", 2.5, 1], ["text", 1.2, 0.5], ["text", 1, 0.25], ["text", 1, 0.6], ["muted", 1.3, 1]];
 
-// `player` is the page’s own, with the preset that is heard. `strike(place, velocity)` is called for a click, without a place if the body
-// has none there; `listen(place)` when the ear is let go elsewhere; `nudge(name, way)` when the floor is dragged, by a share of the way.
+// `player` is the page’s own, with the preset that is heard. `strike(place, velocity)` is called for a click or a key, without a place if the
+// body has none there; `listen(place)` when the ear is let go elsewhere; `nudge(name, way)` when the floor is dragged, by a share of the way.
 // Returns functions that take the energies of the modes and the level, that say that the picture is another, and that tell where the ear
 // and the floor’s far edge are.
 export function drawBody(canvas, player, { strike, listen, nudge }) {
   let [before, moves, drawn, renewed, level] = [performance.now(), [], "", 0, 0];
   let energies = new Float32Array(64);
-  // What the floor is, where the ear is, and what a pointer drags: the ear, or a knob by its name.
+  // What the floor is, where the ear is, and what a pointer drags: the ear, or the knob of a part of the floor by its name.
   let [floor, ear, held] = [undefined, undefined, undefined];
   // What nothing covers: its left end, its width and its height.
   const middle = () => {
@@ -41,45 +45,56 @@ export function drawBody(canvas, player, { strike, listen, nudge }) {
   };
 
   canvas.addEventListener("pointerdown", (event) => {
-    if (event.button !== 0) return;
+    if (event.button !== 0 || held) return;
     const here = at(event);
-    const first = moves.find(([, , time]) => event.timeStamp - time < RECENT);
+    const first = moves.find(([, , time, id]) => id === event.pointerId && event.timeStamp - time < RECENT);
     const way = first ? Math.hypot(event.clientX - first[0], event.clientY - first[1]) : 0;
     const speed = way / Math.max(1, event.timeStamp - (first?.[2] ?? 0));
     const velocity = Math.min(127, Math.round(127 * (AT_REST + PER_SPEED * speed)));
     const isEar = ear && Math.hypot(here[0] - ear[0], here[1] - ear[1]) < EAR;
-    const place = isEar ? undefined : touch(false, here);
-    const name = isEar ? "ear" : place ? undefined : part(here);
+    const { isOn, place } = isEar ? {} : touch(false, here);
+    const name = isEar ? "ear" : isOn ? undefined : part(here);
     if (name) {
       canvas.setPointerCapture(event.pointerId);
-      held = { name, from: here, last: here[1], velocity, isMoved: false };
+      held = { id: event.pointerId, name, from: here, here, velocity, isMoved: false };
     } else strike(place, velocity);
   });
   canvas.addEventListener("pointermove", (event) => {
-    moves = moves.filter(([, , time]) => event.timeStamp - time < RECENT).concat([[event.clientX, event.clientY, event.timeStamp]]);
+    moves = moves.filter(([, , time]) => event.timeStamp - time < RECENT).concat([[event.clientX, event.clientY, event.timeStamp, event.pointerId]]);
     const here = at(event);
     if (!held) {
-      canvas.style.cursor = part(here) && !touch(false, here) ? "ns-resize" : "";
+      canvas.style.cursor = part(here) && !touch(false, here).isOn ? "ns-resize" : "";
       return;
     }
+    if (held.id !== event.pointerId) return;
     held.isMoved ||= Math.hypot(here[0] - held.from[0], here[1] - held.from[1]) > SLOP;
     if (!held.isMoved) return;
-    if (held.name === "ear") held.place = touch(true, here) ?? held.place;
-    else nudge(held.name, (held.last - here[1]) / TRAVEL);
-    held.last = here[1];
+    if (held.name === "ear") held.place = touch(true, here).place ?? held.place;
+    else nudge(held.name, (held.here[1] - here[1]) / TRAVEL);
+    held.here = here;
     renewed++;
   });
-  canvas.addEventListener("pointerup", () => {
-    if (held?.place) listen(held.place);
-    if (held) strike(undefined, held.velocity);
+  canvas.addEventListener("pointerup", ({ pointerId }) => {
+    if (held?.id !== pointerId) return;
+    if (held.place) listen(held.place);
+    strike(undefined, held.velocity);
     held = undefined;
   });
-  canvas.addEventListener("pointercancel", () => (held = undefined));
+  canvas.addEventListener("pointercancel", ({ pointerId }) => held?.id === pointerId && (held = undefined));
+  // What is held is dragged; elsewhere a finger scrolls the page.
+  canvas.addEventListener("touchstart", (event) => held && event.preventDefault(), { passive: false });
   for (const end of ["pointerup", "pointercancel", "pointerleave"]) canvas.addEventListener(end, () => (moves = []));
   canvas.addEventListener("keydown", (event) => {
-    if (event.repeat || (event.key !== "Enter" && event.key !== " ")) return;
+    const way = ARROWS[event.key];
+    const from = way && player.place(event.shiftKey);
+    if (from) {
+      // Arrows move the strike, with Shift the ear.
+      const to = from.map((share, axis) => Math.max(0, Math.min(1, share + way[axis])));
+      if (event.shiftKey) listen(to);
+      strike(event.shiftKey ? undefined : to);
+    } else if (event.repeat || (event.key !== "Enter" && event.key !== " ")) return;
+    else strike();
     event.preventDefault();
-    strike(undefined, Math.round(127 * AT_REST));
   });
 
   function frame(now) {
@@ -101,7 +116,8 @@ export function drawBody(canvas, player, { strike, listen, nudge }) {
     context.clearRect(0, 0, whole, height);
     floor = paintFloor(context, player.floor(whole, height, left, left + width, level), whole, height);
     context.translate(left, 0);
-    const heard = paint(context, player.draw(energies, width, height, seconds, number("accent")));
+    const dragged = held?.place && [held.here[0] - left, held.here[1]];
+    const heard = paint(context, player.draw(energies, width, height, seconds, number("accent")), dragged);
     ear = heard && [heard[0] + left, heard[1]];
   }
   requestAnimationFrame(frame);
@@ -145,8 +161,8 @@ function paintFloor(context, numbers, width, height) {
   return { space, far };
 }
 
-// The numbers are as the module’s `draw` says. Returns where the ear is, if it is known.
-export function paint(context, numbers) {
+// The numbers are as the module’s `draw` says; an ear that is dragged is where the pointer is. Returns where the ear is, if it is known.
+export function paint(context, numbers, dragged) {
   let place = 0;
   const next = () => numbers[place++];
   // Patches meet without gaps when their edges are drawn too.
@@ -166,7 +182,8 @@ export function paint(context, numbers) {
   context.globalAlpha = 1;
   if (place < numbers.length) handle(context, next(), next(), "accent", "strike");
   if (place === numbers.length) return undefined;
-  const [x, y] = [next(), next()];
+  const known = [next(), next()];
+  const [x, y] = dragged ?? known;
   handle(context, x, y, "text", "listen");
   return [x, y];
 }

@@ -68,7 +68,7 @@ function pointers(place, play) {
     if (now === undefined) held.delete(event.pointerId);
     else held.set(event.pointerId, now);
   };
-  place.addEventListener("pointerdown", (event) => move(event, true));
+  place.addEventListener("pointerdown", (event) => event.button === 0 && move(event, true));
   addEventListener("pointermove", (event) => held.has(event.pointerId) && move(event, true));
   for (const end of ["pointerup", "pointercancel"]) addEventListener(end, (event) => move(event, false));
 }

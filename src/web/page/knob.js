@@ -2,7 +2,7 @@
 
 // Movement of the pointer for the whole way, in pixels; with Shift ten times as much.
 const TRAVEL = 200;
-// A turn of the mouse wheel moves it by so much.
+// A notch of the mouse wheel moves it by so much.
 const NOTCH = 0.02;
 // Where the face’s ends are, in degrees from its top, and the radius of its arcs.
 const [END, RADIUS] = [135, 21];
@@ -23,7 +23,7 @@ export function knob(place, { name, param, rest }, say, turn) {
   const label = document.createElement("label");
   label.className = "knob";
   label.innerHTML = `<svg viewBox="-27 -27 54 54" aria-hidden="true"><circle r="17"/><path class="track" d="${arc(0, 1)}"/><path class="arc"/><path class="hand"/></svg>
-    <span></span><input type="range" min="0" max="1" step="any" autocomplete="off"><output></output>`;
+    <span></span><input type="range" min="0" max="1" step="any" autocomplete="off"><output aria-hidden="true"></output>`;
   const [input, value, gold, hand] = ["input", "output", ".arc", ".hand"].map((part) => label.querySelector(part));
   label.querySelector("span").textContent = name;
   input.dataset.param = param;
@@ -42,25 +42,30 @@ export function knob(place, { name, param, rest }, say, turn) {
     turn(next);
   };
   input.oninput = () => move(+input.value);
-  // As long as it is pressed: where the pointer was.
+  // As long as it is pressed: which pointer does that, and where it was.
   let held;
   label.addEventListener("pointerdown", (event) => {
-    if (event.button !== 0) return;
+    if (event.button !== 0 || held) return;
     label.setPointerCapture(event.pointerId);
-    held = event.clientY;
+    held = { id: event.pointerId, y: event.clientY };
     input.focus({ focusVisible: false });
   });
   label.addEventListener("pointermove", (event) => {
-    if (held === undefined) return;
-    const way = (held - event.clientY) / (event.shiftKey ? 10 * TRAVEL : TRAVEL);
-    held = event.clientY;
+    if (held?.id !== event.pointerId) return;
+    const way = (held.y - event.clientY) / (event.shiftKey ? 10 * TRAVEL : TRAVEL);
+    held.y = event.clientY;
     if (way !== 0) move(+input.value + way);
   });
-  for (const end of ["pointerup", "pointercancel"]) label.addEventListener(end, () => (held = undefined));
+  for (const end of ["pointerup", "pointercancel"]) label.addEventListener(end, (event) => held?.id === event.pointerId && (held = undefined));
   label.addEventListener("dblclick", () => move(rest));
   const turned = (event) => {
+    // With Shift, browsers turn the wheel sideways.
+    const way = event.deltaY || event.deltaX;
+    // A page that scrolls past turns nothing: only the knob that has the focus.
+    if (event.ctrlKey || way === 0 || !label.matches(":focus-within")) return;
     event.preventDefault();
-    move(+input.value - Math.sign(event.deltaY) * (event.shiftKey ? NOTCH / 10 : NOTCH));
+    const notches = Math.max(-1, Math.min(1, way / (event.deltaMode === 0 ? 100 : 3)));
+    move(+input.value - notches * (event.shiftKey ? NOTCH / 10 : NOTCH));
   };
   label.addEventListener("wheel", turned, { passive: false });
   return { show, hide: (isHidden) => (label.hidden = isHidden) };

@@ -1,7 +1,7 @@
 // The page: loads the module, starts the audio worklet with the first note, and keeps what is played.
 import { Player, startsNote } from "./player.js";
 import { listen, useMidi } from "./keys.js";
-import { drawBody } from "./body.js";
+import { STRIKE, drawBody } from "./body.js";
 import { panel } from "./panel.js";
 import { draw } from "./pictures.js";
 import { dress } from "./theme.js";
@@ -42,7 +42,7 @@ async function start() {
 function send(event) {
   node ??= start();
   node.then((made) => {
-    if (made.context.state === "suspended") made.context.resume();
+    if (made.context.state !== "running") made.context.resume();
     made.port.postMessage(event);
   }, (error) => (element("status").textContent = `No sound: ${error.message}`));
 }
@@ -55,13 +55,7 @@ function play(key, isOn, velocity = +element("velocity").value) {
 }
 
 const keys = listen(element("keys"), play);
-const drawMasses = draw(element("modes"), element("plane"), (pull) => {
-  const key = state.key;
-  play(key, true, Math.max(1, Math.round(127 * pull)));
-  setTimeout(() => play(key, false), 400);
-});
-
-// The key that a click on the body holds, and lets go of a while later.
+// The key that a click on the body or the pull of a mass holds, and lets go of a while later.
 let held;
 function letGo() {
   if (!held) return;
@@ -70,12 +64,14 @@ function letGo() {
   held = undefined;
 }
 
-function strike(velocity) {
+function hold(key, velocity, time) {
   letGo();
-  const key = state.preset.home;
   play(key, true, velocity);
-  held = { key, timer: setTimeout(letGo, 700) };
+  held = { key, timer: setTimeout(letGo, time) };
 }
+
+const strike = (velocity = STRIKE) => hold(state.preset.home, velocity, 700);
+const drawMasses = draw(element("modes"), element("plane"), (pull) => hold(state.key, Math.max(1, Math.round(127 * pull)), 400));
 
 // A change of the sound, which the page’s own player draws.
 function change(event) {
@@ -85,7 +81,7 @@ function change(event) {
 }
 
 const controls = own.controls();
-const shown = panel(element, own, controls, change, () => strike(89));
+const shown = panel(element, own, controls, change, () => strike());
 const body = drawBody(element("body"), own, {
   strike: (place, velocity) => {
     if (place) change({ strike: place });
@@ -131,7 +127,7 @@ element("family").onchange = () => {
 function step(by) {
   const among = chosen();
   choose(among[(among.indexOf(state.preset) + by + among.length) % among.length]);
-  strike(89);
+  strike();
 }
 element("before").onclick = () => step(-1);
 element("after").onclick = () => step(1);
@@ -152,7 +148,10 @@ element("render").onclick = () => {
 
 // A new take begins with a new synth, so that its bits are those of its events alone.
 element("forget").onclick = async () => {
+  letGo();
   const old = await node;
+  // What it still sends belongs to the old take.
+  if (old) old.port.onmessage = null;
   node = undefined;
   state.take = [];
   element("render").disabled = element("forget").disabled = true;

@@ -68,10 +68,7 @@ export function panel(element, player, controls, set, strike) {
       if (!isOn()) exciters.forEach((other) => other.switch(other === own));
       strike();
     }, glyph(paths));
-    const lamp = button(place, "lamp", () => {
-      own.switch(!isOn());
-      strike();
-    });
+    const lamp = button(place, "lamp", () => own.switch(!isOn()));
     lamp.setAttribute("role", "switch");
     lamp.ariaLabel = lamp.title = `${name} too`;
     return own;

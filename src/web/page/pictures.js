@@ -4,7 +4,6 @@ import { colour } from "./theme.js";
 const TURNS = 1; // per second: the true motion is too fast to be seen
 const FLOOR = -90; // dB
 
-
 // `strike(velocity)` is called when the mass is let go, with 0 to 1. Returns a function that takes what the player looks at.
 export function draw(modes, plane, strike) {
   let masses = new Float32Array(129);
@@ -29,7 +28,10 @@ export function draw(modes, plane, strike) {
     strike(Math.min(1, Math.hypot(...pulled)));
     pulled = null;
   });
-  plane.addEventListener("pointercancel", () => (pulled = null));
+  plane.addEventListener("pointercancel", () => {
+    plane.classList.remove("held");
+    pulled = null;
+  });
 
   function frame(now) {
     const [energies, ratios] = [masses.subarray(1, 65), masses.subarray(65)];

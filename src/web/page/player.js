@@ -108,10 +108,19 @@ export class Player {
     return this.floats(this.wasm.numbers(this.synth), length);
   }
 
-  // The place of the body at a place of its picture; none where it cannot be struck, or its ear cannot be moved.
+  // Whether a place of the picture is on the body, and the body’s place there; none where it cannot be struck, or its ear cannot be moved.
   touch(isEar, width, height, x, y) {
-    const isTouched = this.wasm.touch(this.synth, isEar, width, height, x, y);
-    return isTouched ? [...this.floats(this.wasm.numbers(this.synth), 2)] : undefined;
+    const found = this.wasm.touch(this.synth, isEar, width, height, x, y);
+    return { isOn: found > 0, place: found > 1 ? this.point() : undefined };
+  }
+
+  // Where the body is struck, or heard; none if that cannot be moved.
+  place(isEar) {
+    return this.wasm.place(this.synth, isEar) ? this.point() : undefined;
+  }
+
+  point() {
+    return [...this.floats(this.wasm.numbers(this.synth), 2)];
   }
 
   // Number of voices, 64 energies and 64 ratios.

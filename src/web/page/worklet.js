@@ -8,7 +8,7 @@ class Sprung extends AudioWorkletProcessor {
     this.player = new Player(module, sampleRate);
     this.take = take;
     this.next = 0;
-    [this.looking, this.level] = [0, 0];
+    [this.looking, this.peak] = [0, 0];
     this.port.onmessage = ({ data }) => {
       const played = { ...data, frame: this.player.frame };
       this.player.play(played, 0);
@@ -20,10 +20,12 @@ class Sprung extends AudioWorkletProcessor {
     this.next = this.player.render(this.take, this.next, left, right ?? left);
     // About sixty times a second.
     this.looking += left.length;
-    this.level = left.reduce((most, sample) => Math.max(most, Math.abs(sample)), this.level);
+    for (const side of [left, right ?? left]) this.peak = side.reduce((most, sample) => Math.max(most, Math.abs(sample)), this.peak);
     if (this.looking >= sampleRate / 60) {
-      this.port.postMessage({ masses: this.player.look(), level: Math.min(1, this.level) });
-      [this.looking, this.level] = [0, 0];
+      // As on the meter of the plugin’s window: 60 dB from end to end.
+      const level = Math.max(0, Math.min(1, 1 + Math.log10(this.peak) / 3));
+      this.port.postMessage({ masses: this.player.look(), level });
+      [this.looking, this.peak] = [0, 0];
     }
     return true;
   }

@@ -45,8 +45,8 @@ impl Drawn {
         self.numbers.len()
     }
 
-    /// Draws the floor of a stage of this size, of which the middle reaches from one of its sides to another, for the level that sounds.
-    /// The numbers are: the space; how strongly its waves glow, and how much of that is by the level; the height of its far edge, and its
+    /// Draws the floor of a stage of this size, of which the middle reaches from one of its sides to another, for the level that sounds, a
+    /// share of the 60 dB below full scale. The numbers are: the space; how strongly its waves glow, and how much of that is by the level; the height of its far edge, and its
     /// ends; and how many lines, and for each how many points, and these. Where there is no space, the line goes round a shadow.
     pub(crate) fn floor(&mut self, values: &Values, size: [f32; 2], middle: [f32; 2], level: f32) -> usize {
         let (stage, [left, right]) = (rect(size), middle);
@@ -96,13 +96,26 @@ impl Drawn {
     }
 
     /// Writes the coordinates of the point of the body that is nearest to a place in the picture, and to which its ear can be moved, or
-    /// where it can be struck. Returns whether the body is touched there, and has such places.
-    pub(crate) fn touch(&mut self, is_ear: bool, size: [f32; 2], at: [f32; 2]) -> bool {
+    /// where it can be struck. Returns 0 beside the body, 1 on it, and 2 where it can be struck or heard elsewhere; an ear is never beside it.
+    pub(crate) fn touch(&mut self, is_ear: bool, size: [f32; 2], at: [f32; 2]) -> u32 {
         let (point, distance) = self.shape.nearest(rect(size), pos2(at[0], at[1]));
         let Point { x, y } = self.shape.confined(point, |body| if is_ear { body.pickup } else { body.strike });
         self.numbers.clear();
         self.numbers.extend([x as f32, y as f32]);
-        (is_ear || distance <= REACH) && self.has_places()
+        match (is_ear || distance <= REACH, self.has_places()) {
+            (false, _) => 0,
+            (true, false) => 1,
+            (true, true) => 2,
+        }
+    }
+
+    /// Writes where the body is struck, or heard. Returns whether that can be moved.
+    pub(crate) fn place(&mut self, is_ear: bool) -> bool {
+        let places = self.shape.origin.body().filter(|_| self.has_places()).map(|body| [body.strike, body.pickup]);
+        let place = places.map(|places| places[usize::from(is_ear)]);
+        self.numbers.clear();
+        self.numbers.extend(place.iter().flat_map(|place| [place.x as f32, place.y as f32]));
+        place.is_some()
     }
 
     /// Whether strike and ear can be moved.

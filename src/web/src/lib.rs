@@ -1,9 +1,10 @@
 //! Sprung as a WebAssembly module without imports: JavaScript creates and plays a synth through plain functions.
 //!
 //! A page shares no memory with its audio worklet, so each has an instance of the module of its own: the worklet's
-//! instance plays, the page's instance lists the presets and renders takes. Addresses are valid until the next call
-//! that allocates: [`create`], [`presets`], [`load`], [`put`], [`make`], [`process`] after one of these, [`energies`], [`draw`], [`tile`],
-//! [`floor`], [`numbers`] or [`touch`]; of these six, the first after another preset computes the shapes of its modes, which is slow.
+//! instance plays, the page's instance lists the presets and renders takes. Addresses are valid until the next call that allocates:
+//! [`create`], [`presets`], [`controls`], [`say`], [`load`], [`put`], [`make`], [`process`] after one of these three, [`energies`], [`draw`],
+//! [`tile`], [`floor`], [`numbers`] or [`touch`]; of these six, the first after another preset computes the shapes of its modes, which is
+//! slow.
 
 mod controls;
 mod drawn;
@@ -183,6 +184,16 @@ pub unsafe extern "C" fn put(player: *mut Player, is_ear: bool, x: f64, y: f64) 
     unsafe { at(player) }.put(is_ear, x, y);
 }
 
+/// Writes the place where the body is struck, or heard, as two [`numbers`]. Returns whether it can be moved. Allocates.
+///
+/// # Safety
+/// `player` is from [`create`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn place(player: *mut Player, is_ear: bool) -> bool {
+    // SAFETY: as above.
+    unsafe { at(player) }.drawn().place(is_ear)
+}
+
 /// The address of 64 numbers: the energies of the modes with which the body is drawn, to be written.
 ///
 /// # Safety
@@ -194,9 +205,8 @@ pub unsafe extern "C" fn energies(player: *mut Player) -> *mut f32 {
 }
 
 /// Draws the body of the preset as it is some seconds after the last time (at its greatest bend if they are negative), `width` by `height`
-/// pixels large, with a colour (0xRRGGBB) for what moves. Returns how many numbers describe it; [`numbers`] returns their address. They
-/// are: how many polygons, and for each the four corners and red, green and blue; how many lines, and for each its ink, how many points,
-/// and these; and the places of the strike and of the ear, if they are known. Allocates.
+/// pixels large, with a colour (0xRRGGBB) for what moves. Returns how many numbers describe it, as `Drawn::draw` says; [`numbers`] returns
+/// their address. Allocates.
 ///
 /// # Safety
 /// `player` is from [`create`].
@@ -206,10 +216,9 @@ pub unsafe extern "C" fn draw(player: *mut Player, width: f32, height: f32, seco
     unsafe { at(player) }.drawn().draw([width, height], seconds, glow)
 }
 
-/// Draws the floor of a stage of `width` by `height` pixels, whose middle reaches from `left` to `right`, for the level that sounds from 0
-/// to 1. Returns how many numbers describe it; [`numbers`] returns their address. They are: the space; how strongly its waves glow, and how
-/// much of that is by the level; the height of its far edge and its ends; how many lines, and for each how many points, and these. Where
-/// there is no space, the line goes round a shadow. Allocates.
+/// Draws the floor of a stage of `width` by `height` pixels, whose middle reaches from `left` to `right`, for the level that sounds, as a
+/// share of the 60 dB below full scale. Returns how many numbers describe it, as `Drawn::floor` says; [`numbers`] returns their address.
+/// Allocates.
 ///
 /// # Safety
 /// `player` is from [`create`].
@@ -236,13 +245,13 @@ pub unsafe extern "C" fn numbers(player: *mut Player) -> *const f32 {
     unsafe { at(player) }.drawn().numbers.as_ptr()
 }
 
-/// Finds the point of the body that is nearest to a place in the picture, as two [`numbers`] for [`put`]. Returns whether the body is
-/// touched there and can be struck or heard there. Allocates.
+/// Finds the point of the body that is nearest to a place in the picture, as two [`numbers`] for [`put`]. Returns 0 beside the body, 1 on
+/// it, and 2 where it can be struck or heard elsewhere. Allocates.
 ///
 /// # Safety
 /// `player` is from [`create`].
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn touch(player: *mut Player, is_ear: bool, width: f32, height: f32, x: f32, y: f32) -> bool {
+pub unsafe extern "C" fn touch(player: *mut Player, is_ear: bool, width: f32, height: f32, x: f32, y: f32) -> u32 {
     // SAFETY: as above.
     unsafe { at(player) }.drawn().touch(is_ear, [width, height], [x, y])
 }

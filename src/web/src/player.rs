@@ -60,6 +60,8 @@ impl Player {
     pub(crate) fn load(&mut self, preset: usize) {
         if let Some(preset) = Preset::factory_at(preset) {
             self.preset = preset.clone();
+            // What was turned and not heard yet was of the sound before.
+            self.events.retain(|event| !matches!(event.kind, EventKind::Param { .. }));
             self.take_preset();
         }
     }
@@ -132,8 +134,8 @@ impl Player {
     pub(crate) fn turn(&mut self, frame: u32, number: usize, position: f64) {
         if let Some(info) = controls::info(number) {
             let value = info.denormalise(position.clamp(0.0, 1.0));
-            // Of a sound that is not set yet it is a part.
-            if self.is_new {
+            // At the first frame of a sound that is not set yet it is a part of that.
+            if self.is_new && frame == 0 {
                 self.preset.patch.set(info.param, value);
             }
             self.push(Event { frame, channel: 0, kind: EventKind::Param { param: info.param, value } });
@@ -255,6 +257,29 @@ mod tests {
     }
 
     #[test]
+    fn a_turn_counts_from_its_frame_on_whatever_the_lengths_of_blocks() {
+        let decay = Param::Decay as usize;
+        let note = |player: &mut Player| player.midi(0, [0x90, 60, 100]);
+        let [mut live, mut replayed] = [0, 1].map(|_| Player::new(48_000.0, 0));
+        note(&mut live);
+        live.process(300);
+        let mut sound = live.samples(0)[..300].to_vec();
+        live.turn(0, decay, 0.1);
+        live.process(724);
+        sound.extend(&live.samples(0)[..724]);
+        note(&mut replayed);
+        replayed.turn(300, decay, 0.1);
+        replayed.process(1024);
+        assert_eq!(replayed.samples(0), sound);
+        // Nor is it of the sound that is loaded before it is heard.
+        replayed.load(1);
+        replayed.turn(0, decay, 0.9);
+        replayed.load(2);
+        replayed.process(64);
+        assert_eq!(replayed.synth.values().get(Param::Decay), Preset::factory()[2].patch.get(Param::Decay));
+    }
+
+    #[test]
     fn the_body_is_drawn_where_it_is_struck_and_swings_as_it_sounds() {
         let mut player = Player::new(48_000.0, 0);
         player.load(Preset::factory().iter().position(|preset| preset.name == "Church Bell").unwrap());
@@ -265,10 +290,10 @@ mod tests {
         player.drawn().energies[0] = 1.0;
         assert!(player.drawn().draw(size, 0.3, 0xff_ff_ff) > 10_000);
         assert_ne!(player.drawn().numbers, before);
-        assert!(!player.drawn().touch(false, size, [1.0, 1.0]), "beside it");
-        assert!(!player.drawn().touch(false, size, [300.0, 300.0]), "two joined bodies stay as they are");
+        assert!(player.drawn().touch(false, size, [1.0, 1.0]) == 0, "beside it");
+        assert!(player.drawn().touch(false, size, [300.0, 300.0]) == 1, "two joined bodies stay as they are");
         player.load(Preset::factory().iter().position(|preset| preset.name == "Gong").unwrap());
-        assert!(player.drawn().touch(false, size, [360.0, 210.0]));
+        assert_eq!(player.drawn().touch(false, size, [360.0, 210.0]), 2);
         let [x, y] = player.drawn().numbers[..] else { panic!("a point") };
         let modes = player.preset.patch.modes.clone();
         player.turn(0, macro_param(0).unwrap() as usize, 1.0);

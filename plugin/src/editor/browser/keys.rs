@@ -1,7 +1,7 @@
 //! The browser's keys: arrows lead along the shelves, Space plays the sound again, Enter keeps it.
 
 use super::list::row;
-use egui::{Event, Id, Key, Popup, Ui};
+use egui::{Event, Id, Key, Modifiers, Popup, Ui};
 
 /// What is asked for by a key.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,7 +95,11 @@ pub(super) fn asked(ui: &Ui, search: Id, words: &str, count: usize) -> Option<Co
     }
     let pressed = |key| ui.input(|input| input.key_pressed(key));
     let ways = if focus == Focus::Words { &WAYS[..4] } else { &WAYS[..] };
-    if let Some((_, way)) = ways.iter().find(|(key, _)| pressed(*key)) {
+    if let Some((key, way)) = ways.iter().find(|(key, _)| pressed(*key)) {
+        if focused == Some(search) {
+            // It would move in the words as well.
+            ui.input_mut(|input| input.consume_key(Modifiers::NONE, *key));
+        }
         return Some(Command::Go(*way));
     }
     // A sound that has the focus is pressed by it, as buttons are. To the search it comes as a text.

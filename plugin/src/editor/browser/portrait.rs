@@ -177,7 +177,7 @@ fn macros(ui: &mut Ui, shown: &Shown, controls: &mut Controls) {
     caption(ui, "Macros", controls);
     rows(ui, &macros, 0, CELL_HEIGHT, |ui, cell, (info, name)| {
         let cell = cell.with_max_y(cell.bottom() - 4.0).shrink2(vec2(1.0, 0.0));
-        let ring = Ring::of(info, &shown.patch().routes, controls);
+        let ring = Ring::of(info, (&shown.patch().routes, shown.guide()), controls);
         knob::show(ui, (cell, KNOB), info, name, &ring, controls);
     });
 }

@@ -32,9 +32,9 @@ impl Shown {
         // Read first: a sound that is loaded meanwhile is then noticed at the next refresh.
         let loaded = params.loaded();
         let mut playable = params.state().playable;
-        // What was wood is not, once it is made of glass.
-        let tags = tags_to_save(&playable);
-        if let Playable::Preset(preset) = &mut playable {
+        // Tags that another body contradicts, such as its material, are not shown.
+        let tags = matches!(playable, Playable::Preset(_)).then(|| tags_to_save(&playable));
+        if let (Playable::Preset(preset), Some(tags)) = (&mut playable, tags) {
             preset.tags = tags;
         }
         let mut shown = Self { loaded, playable, guide: Guide::default(), sound: 0 };

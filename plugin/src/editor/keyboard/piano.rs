@@ -101,12 +101,12 @@ impl Piano {
         if let Some((key, velocity)) = response.hover_pos().and_then(|place| keys.at(place)) {
             let range = match (guide.lowest, guide.highest) {
                 // A kit has pads here and there.
-                (0, 127) if meant >> key & 1 == 0 => "nothing sounds here".to_owned(),
+                (0, 127) if meant >> key & 1 == 0 => "   nothing sounds here".to_owned(),
                 (0, 127) => String::new(),
-                (lowest, highest) => format!("made for {} to {}", note_name(lowest), note_name(highest)),
+                (lowest, highest) => format!("   made for {} to {}", note_name(lowest), note_name(highest)),
             };
             let title = format!("{} at velocity {:.0}", note_name(key), velocity * 127.0);
-            *controls.hint = Hint::new(title, format!("lower on the key is louder   {range}"));
+            *controls.hint = Hint::new(title, format!("lower on the key is louder{range}"));
         }
         let down = down | self.held.key().map_or(0, |key| 1 << key);
         paint(ui.painter(), &keys, [down, meant], guide.home, controls.palette);

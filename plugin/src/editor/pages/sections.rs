@@ -119,7 +119,7 @@ pub(super) fn knob_at(
     (patch, guide): (&Patch, &Guide),
     controls: &mut Controls,
 ) {
-    let ring = Ring::of(info, &patch.routes, controls);
+    let ring = Ring::of(info, (&patch.routes, guide), controls);
     let (name, cell) = (short_name(info, guide), cell.shrink2(vec2(BESIDE, 0.0)));
     lamps::dimmed(ui, cell, info, patch, controls, |ui, controls| {
         if info.unit == Unit::Choice {

@@ -84,7 +84,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, [title, side]: [f32; 2], shown: &Sho
             }
             for (info, name) in knobs {
                 let cell = Rect::from_min_size(corner + vec2(0.0, title), vec2(width, cell_height(side) - 4.0));
-                let ring = Ring::of(info, &shown.patch().routes, controls);
+                let ring = Ring::of(info, (&shown.patch().routes, shown.guide()), controls);
                 lamps::dimmed(ui, cell, info, shown.patch(), controls, |ui, controls| {
                     knob::show(ui, (cell.shrink2(vec2(1.0, 0.0)), side), info, &name, &ring, controls);
                 });

@@ -24,14 +24,8 @@ pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) 
         let tile = Rect::from_min_size(corner, vec2(rect.width(), height));
         let is_on = mover.is_on(controls);
         let response = ui.interact(tile, Id::unique(("mover", name)), Sense::click());
-        response.widget_info(|| {
-            WidgetInfo::selected(
-                Role::Button,
-                true,
-                is_on,
-                if is_on { format!("Hear {name}") } else { format!("{name} alone") },
-            )
-        });
+        let label = if is_on { format!("Hear {name}") } else { format!("{name} alone") };
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_on, &label));
         let lamp = Rect::from_center_size(tile.right_top() + vec2(-9.0, 0.5 * height.min(20.0)), vec2(18.0, 20.0));
         // One that acts already is only heard: whoever clicks it does not mean to lose the others.
         is_clicked |= response.clicked();

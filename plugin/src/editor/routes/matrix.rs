@@ -121,7 +121,7 @@ fn show_route(
     let triangle = vec![corner(-4.0, -2.0), corner(4.0, -2.0), corner(0.0, 3.0)];
     ui.painter().add(Shape::convex_polygon(triangle, colour, Stroke::NONE));
     outline(ui, &response, mark, RADIUS, palette);
-    let (ring, now) = (Ring::of(info, &patch.routes, controls), now(place, route, controls));
+    let (ring, now) = (Ring::of(info, (&patch.routes, guide), controls), now(place, route, controls));
     let shown = (goes_both_ways(route), amount_text(route, controls.value(info), info));
     knob::show_bar(ui, [bar, value], info, (&ring, &now), shown, controls);
 }

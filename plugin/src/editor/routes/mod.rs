@@ -80,7 +80,7 @@ pub(super) struct Ring {
 }
 
 impl Ring {
-    pub(super) fn of(info: &ParamInfo, routes: &Routes, controls: &Controls) -> Self {
+    pub(super) fn of(info: &ParamInfo, (routes, guide): (&Routes, &Guide), controls: &Controls) -> Self {
         // Where the knob says by how much a value is moved, the value itself has no place on it.
         if controls.own(info).is_some() {
             return Self::default();
@@ -94,9 +94,11 @@ impl Ring {
         let these = || routes.iter().filter(|(_, route)| route.destination == info.param);
         let ranges = these().map(range).filter(|[from, to]| from != to).collect();
         let mover = |(place, route): (usize, Route)| {
-            format!("{} {}", source_name(route.source, &Guide::default()), controls.text(amount_param(place).info()))
+            let (info, amount) = (amount_param(place).info(), controls.value(amount_param(place).info()));
+            (amount != 0.0)
+                .then(|| format!("{} {}", source_name(route.source, guide), amount_text(&route, amount, info)))
         };
-        let movers = these().map(mover).collect::<Vec<_>>().join(", ");
+        let movers = these().filter_map(mover).collect::<Vec<_>>().join(", ");
         let marks = controls.modulated(info).map(|value| info.normalise(value) as f32).collect();
         Self { ranges, marks, movers }
     }

@@ -136,7 +136,7 @@ pub(super) fn show(
     }
     let text = amount_text(route, amount, info);
     if is_editable {
-        let (ring, now) = (Ring::of(info, &patch.routes, controls), now(place, route, controls));
+        let (ring, now) = (Ring::of(info, (&patch.routes, guide), controls), now(place, route, controls));
         let shown = (goes_both_ways(route), text);
         knob::show_bar(ui, [parts.bar, parts.value], info, (&ring, &now), shown, controls);
     } else {

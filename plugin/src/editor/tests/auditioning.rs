@@ -118,9 +118,19 @@ fn after_a_click_the_keys_are_those_of_the_list_although_words_are_searched_for(
     stage.press_key(Key::Space);
     assert_eq!((stage.names().len(), strikes()), (names.len(), 1), "Space plays it again, and is no word");
     stage.press_key(Key::ArrowRight);
+    stage.press_key(Key::ArrowLeft);
+    stage.press_key(Key::ArrowRight);
     assert_eq!(stage.params.name(), names[2]);
     stage.press_key(Key::Enter);
     assert!(!stage.is_browsing() && stage.params.name() == names[2]);
+    // The cursor has stayed behind the words.
+    stage.button("Browse");
+    stage.type_text("marimba");
+    stage.press_key(Key::ArrowDown);
+    stage.press_key(Key::ArrowLeft);
+    stage.type_text("x");
+    let words = stage.harness.get_by_role_and_label(Role::TextInput, "Search").accesskit_node().value();
+    assert!(words.is_some_and(|words| words.ends_with("marimbax")));
 }
 
 #[test]

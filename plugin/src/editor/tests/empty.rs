@@ -116,7 +116,7 @@ fn modes_alone_are_made_a_body_of_a_material_in_one_click() {
     stage.harness.get_by_role_and_label(Role::RadioButton, "material: glass").click();
     stage.harness.run_steps(3);
     assert_eq!(made(&stage), Some(("marimba", "glass")));
-    assert!(stage.paints("What it is made of"));
+    assert!(stage.paints("What it is made of") && stage.paints("mallet  glass"), "no wood any more");
     stage.button("Undo");
     assert!(stage.params.state() == before);
     // The button makes it of the usual material.

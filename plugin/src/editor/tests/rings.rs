@@ -143,3 +143,13 @@ fn pictures_of_rings_are_as_accepted() {
     }
     finish();
 }
+
+#[test]
+fn a_knob_says_what_moves_it() {
+    let routes = [(Source::Velocity, Param::MalletHardness, 35.0), (Source::Lfo1, Param::MalletHardness, 0.0)];
+    let mut band = band(SIZE, Theme::Dark, &routes);
+    let at = band.face(Param::MalletHardness).center();
+    band.event(Event::PointerMoved(at));
+    band.passes(2);
+    assert!(band.stage.paints("Moved by velocity +35 %."));
+}

@@ -124,7 +124,9 @@ fn show_tooltip(ui: &Ui, Hint { title, help }: &Hint) {
     });
     // What was clicked or turned has shown what it does, and is not to be covered.
     if is_used {
-    } else if rested < REST {
+        return;
+    }
+    if rested < REST {
         ui.ctx().request_repaint_after(Duration::from_secs_f32(REST - rested));
     } else if !is_down && !Popup::is_any_open(ui.ctx()) && !ui.ctx().egui_wants_keyboard_input() {
         // egui keeps the size of what it showed under an id: another hint would be broken to that width.
