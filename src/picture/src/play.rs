@@ -52,8 +52,8 @@ pub const ESSENTIALS: [(Param, &str); 6] = [
     (Param::Tilt, "Brightness"),
     (Param::Width, "Width"),
     (Param::VaryPosition, "Vary"),
-    (Param::SpaceMix, "Space mix"),
-    (Param::SpaceSize, "Space size"),
+    (Param::SpaceMix, "Reverb mix"),
+    (Param::SpaceSize, "Reverb size"),
 ];
 
 /// Whether a knob does nothing as long as there is no space.

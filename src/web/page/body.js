@@ -41,7 +41,7 @@ export function drawBody(canvas, player, { strike, listen, nudge }) {
   // The knob of the floor’s part there.
   const part = ([x, y]) => {
     if (!floor || floor.space === 0 || y < floor.far - GRIP) return undefined;
-    return y < floor.far + GRIP ? "Space size" : "Space mix";
+    return y < floor.far + GRIP ? "Reverb size" : "Reverb mix";
   };
 
   canvas.addEventListener("pointerdown", (event) => {
