@@ -69,7 +69,9 @@ enum Over {
 /// What a window leaves to the next one when it is closed: its face; and the steps that can be undone, the two versions of the sound, and
 /// how many states the host had loaded.
 #[derive(Clone, Default)]
-pub(super) struct Past(Arc<Mutex<(Face, Option<(History, Versions, u64)>)>>);
+pub(super) struct Past(Arc<Mutex<(Face, Option<Steps>)>>);
+
+type Steps = (History, Versions, u64);
 
 /// An open window.
 pub(super) struct Window {
