@@ -7,6 +7,7 @@ use crate::screen::{Onlooker, Screen};
 use crate::vst3_host::{Frame, Module, View, Vst3};
 use crate::window::{Editor, Parent, on_this_screen};
 use sprung::preset::Preset;
+use sprung_picture::Palette;
 use std::process::ExitCode;
 use std::time::Duration;
 use vst3::ComWrapper;
@@ -27,8 +28,6 @@ const VIEW: [i16; 2] = [935, 23];
 const ENTRY_100: [i16; 2] = [976, 78];
 const ENTRY_150: [i16; 2] = [976, 124];
 const ENTRY_200: [i16; 2] = [976, 170];
-/// Blue, green and red of the ground behind the panels.
-const GROUND: [u8; 3] = [26, 20, 20];
 /// The space around the panels, and the corner by which the window is resized, at 100 %.
 const MARGIN: f64 = 8.0;
 const CORNER: f64 = 20.0;
@@ -312,8 +311,9 @@ fn is_whole(host: &mut dyn Host, expected: [u32; 2], factor: f64, what: &str) {
 /// Whether nothing is cut off: beyond the panels, the margins on the right and at the bottom are empty.
 fn ends_with_its_panels(onlooker: &Onlooker, [width, height]: [u32; 2], factor: f64) -> bool {
     let pixels = onlooker.pixels(width, height);
+    let [red, green, blue, _] = Palette::DARK.ground.to_array();
     let is_ground = |x: u32, y: u32| {
-        pixels[(y * width + x) as usize].iter().zip(GROUND).all(|(one, other)| one.abs_diff(other) <= 2)
+        pixels[(y * width + x) as usize].iter().zip([blue, green, red]).all(|(one, other)| one.abs_diff(other) <= 2)
     };
     let [margin, corner] = [MARGIN, CORNER].map(|length| (length * factor).ceil() as u32);
     // A pixel on an edge may be a mixture.

@@ -1,6 +1,7 @@
 //! The floor that a body stands on, which is its space: nothing, a plate, springs, or a room.
 
 use emath::{Pos2, Rect, Vec2, pos2, vec2};
+use sprung::params::Param;
 use std::f32::consts::TAU;
 
 /// Height of the floor's far edge, as a share of the stage's, and how much higher it is for each share of the travel by which the space
@@ -22,8 +23,10 @@ pub struct Floor {
 }
 
 impl Floor {
-    /// The floor of a stage, whose far edge stays within `middle`, for a space that is `larger` than usual, as a share of the travel.
-    pub fn of(stage: Rect, middle: Rect, larger: f32) -> Self {
+    /// The floor of a stage, whose far edge stays within `middle`, for the position of the knob of the space's size if there is one.
+    pub fn of(stage: Rect, middle: Rect, size: Option<f32>) -> Self {
+        let usual = Param::SpaceSize.info().normalise(Param::SpaceSize.info().default) as f32;
+        let larger = size.map_or(0.0, |size| size - usual);
         let edge = 0.36 * stage.width();
         // Not under the words at the sides.
         let ends = [(stage.center().x - edge).max(middle.left()), (stage.center().x + edge).min(middle.right())];

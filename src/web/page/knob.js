@@ -18,7 +18,7 @@ const arc = (from, to) => {
 };
 
 // Adds a knob for a parameter that rests at `rest`; positions go from 0 to 1. `say(position)` is its value as text, `turn(position)` is
-// called when it is turned. Returns a function that shows a position.
+// called when it is turned. Returns functions that show a position, and that hide it or show it again.
 export function knob(place, { name, param, rest }, say, turn) {
   const label = document.createElement("label");
   label.className = "knob";

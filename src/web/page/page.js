@@ -81,7 +81,7 @@ function change(event) {
 }
 
 const controls = own.controls();
-const shown = panel(element, own, controls, change, () => strike());
+const shown = panel(element, own, controls, change, strike);
 const body = drawBody(element("body"), own, {
   strike: (place, velocity) => {
     if (place) change({ strike: place });

@@ -117,18 +117,17 @@ export function panel(element, player, controls, set, strike) {
 
   function turned(place, name, param, rest, needsSpace = false) {
     const face = knob(place, { name, param, rest }, (position) => player.say(param, position), (position) => turn(param, position));
-    return { param, needsSpace, face, params: [param], show: () => face.show(positions.get(param)) };
+    return { name, param, needsSpace, face, params: [param], show: () => face.show(positions.get(param)) };
   }
   const knobs = ["knob", "output"].flatMap((kind) =>
     controls(kind).map(({ name, numbers: [param, rest, needsSpace] }) =>
       turned(element(kind === "knob" ? "knobs" : "output"), name, +param, +rest, needsSpace === "1")));
 
-  let named = [];
   return {
     show: (preset) => {
       element("macros").replaceChildren();
       const face = (name, place) => name && turned(element("macros"), name, macros[place].param, macros[place].rest);
-      named = preset.macros.map(face).filter(Boolean);
+      const named = preset.macros.map(face).filter(Boolean);
       remembered.clear();
       const all = [...exciters, ...spaces, ...knobs, ...named];
       all.forEach(({ params }) => params.forEach((param) => positions.set(param, player.position(param))));
@@ -144,10 +143,9 @@ export function panel(element, player, controls, set, strike) {
       }),
     // By so much of the way of the knob with a name.
     nudge: (name, way) => {
-      const { numbers: [param] } = controls("knob").find((row) => row.name === name);
-      const position = Math.max(0, Math.min(1, positions.get(+param) + way));
-      turn(+param, position);
-      knobs.find((one) => one.param === +param).show();
+      const { param, show } = knobs.find((one) => one.name === name);
+      turn(param, Math.max(0, Math.min(1, positions.get(param) + way)));
+      show();
     },
   };
 }

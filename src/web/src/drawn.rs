@@ -34,26 +34,24 @@ impl Drawn {
     pub(crate) fn draw(&mut self, size: [f32; 2], seconds: f32, glow: u32) -> usize {
         let rect = rect(size);
         let moved = self.swing.advance((seconds >= 0.0).then_some(seconds), &self.shape, &self.energies, rect);
-        let body = self.shape.origin.body();
-        let strike = body.map(|body| body.strike);
+        let strike = self.shape.origin.body().map(|body| body.strike);
         let pose = Pose { displacements: &moved, nodal: self.shape.lines_of(&self.energies), strike };
         let picture = Picture::of(rect, &self.shape.figure, &pose, colour(glow));
-        let ear = body.filter(|_| self.has_places()).map(|body| body.pickup);
-        let heard = ear.map(|ear| self.shape.figure.form.on(self.shape.place(rect), ear, 0.0));
+        let heard = self.places().map(|[_, ear]| self.shape.figure.form.on(self.shape.place(rect), ear, 0.0));
         self.write(&picture);
         self.numbers.extend(heard.iter().flat_map(|at| [at.x, at.y]));
         self.numbers.len()
     }
 
     /// Draws the floor of a stage of this size, of which the middle reaches from one of its sides to another, for the level that sounds, a
-    /// share of the 60 dB below full scale. The numbers are: the space; how strongly its waves glow, and how much of that is by the level; the height of its far edge, and its
-    /// ends; and how many lines, and for each how many points, and these. Where there is no space, the line goes round a shadow.
+    /// share of the 60 dB below full scale. The numbers are: the space; how strongly its waves glow, and how much of that is by the level;
+    /// the height of its far edge, and its ends; and how many lines, and for each how many points, and these. Where there is no space, the
+    /// line goes round a shadow. Returns how many numbers they are.
     pub(crate) fn floor(&mut self, values: &Values, size: [f32; 2], middle: [f32; 2], level: f32) -> usize {
         let (stage, [left, right]) = (rect(size), middle);
         let space = values.get(Param::Space) as usize;
-        let (info, travel) = (Param::SpaceSize.info(), values.get(Param::SpaceSize));
-        let larger = if space > 0 { info.normalise(travel) - info.normalise(info.default) } else { 0.0 };
-        let floor = Floor::of(stage, stage.with_min_x(left).with_max_x(right), larger as f32);
+        let size = (space > 0).then(|| Param::SpaceSize.info().normalise(values.get(Param::SpaceSize)) as f32);
+        let floor = Floor::of(stage, stage.with_min_x(left).with_max_x(right), size);
         let lines = if space > 0 { floor.lines(space) } else { vec![floor.shadow()] };
         let [strength, glow] = Floor::glow(values.get(Param::SpaceMix) / 100.0, level);
         let [from, to] = floor.ends;
@@ -102,25 +100,22 @@ impl Drawn {
         let Point { x, y } = self.shape.confined(point, |body| if is_ear { body.pickup } else { body.strike });
         self.numbers.clear();
         self.numbers.extend([x as f32, y as f32]);
-        match (is_ear || distance <= REACH, self.has_places()) {
-            (false, _) => 0,
-            (true, false) => 1,
-            (true, true) => 2,
-        }
+        let is_on = is_ear || distance <= REACH;
+        if is_on { 1 + u32::from(self.places().is_some()) } else { 0 }
     }
 
     /// Writes where the body is struck, or heard. Returns whether that can be moved.
     pub(crate) fn place(&mut self, is_ear: bool) -> bool {
-        let places = self.shape.origin.body().filter(|_| self.has_places()).map(|body| [body.strike, body.pickup]);
-        let place = places.map(|places| places[usize::from(is_ear)]);
+        let place = self.places().map(|places| places[usize::from(is_ear)]);
         self.numbers.clear();
         self.numbers.extend(place.iter().flat_map(|place| [place.x as f32, place.y as f32]));
         place.is_some()
     }
 
-    /// Whether strike and ear can be moved.
-    fn has_places(&self) -> bool {
-        matches!(self.shape.origin, Origin::FromBody(_))
+    /// Where strike and ear are, if they can be moved.
+    fn places(&self) -> Option<[Point; 2]> {
+        let Origin::FromBody(body) = &self.shape.origin else { return None };
+        Some([body.strike, body.pickup])
     }
 }
 

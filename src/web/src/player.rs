@@ -71,10 +71,7 @@ impl Player {
     pub(crate) fn put(&mut self, is_ear: bool, x: f64, y: f64) {
         let mut origin = Origin::of(&self.preset.patch.modes);
         let point = Point { x: x.clamp(0.0, 1.0), y: y.clamp(0.0, 1.0) };
-        if origin.pair().is_some() {
-            return;
-        }
-        let Some(body) = origin.body_mut() else { return };
+        let Origin::FromBody(body) = &mut origin else { return };
         let place = if is_ear { &mut body.pickup } else { &mut body.strike };
         if std::mem::replace(place, point) == point {
             return;

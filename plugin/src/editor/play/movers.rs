@@ -55,13 +55,10 @@ pub(super) fn show(ui: &Ui, rect: Rect, is_tall: bool, controls: &mut Controls) 
     is_clicked
 }
 
-/// Lets one exciter act and no other, as one step that can be undone.
+/// Lets an exciter that is off act and no other, as one step that can be undone.
 fn act_alone(mover: &Lamp, controls: &mut Controls) {
     let is_wanted = |other: &Lamp| other.param == mover.param;
     let changed: Vec<&Lamp> = MOVERS.iter().filter(|other| is_wanted(other) != other.is_on(controls)).collect();
-    if changed.is_empty() {
-        return;
-    }
     let values = changed.into_iter().flat_map(|other| other.switched(controls)).collect();
     controls.set_all(format!("{} alone", mover.section), values);
 }

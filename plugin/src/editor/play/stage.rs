@@ -32,9 +32,7 @@ pub(super) struct Touched {
 
 /// The floor of a stage, whose far edge stays within `middle`.
 pub(in crate::editor) fn floor(stage: Rect, middle: Rect, controls: &Controls) -> Floor {
-    let size = Param::SpaceSize.info();
-    let larger = if has_space(controls) { controls.position(size) - size.normalise(size.default) as f32 } else { 0.0 };
-    Floor::of(stage, middle, larger)
+    Floor::of(stage, middle, has_space(controls).then(|| controls.position(Param::SpaceSize.info())))
 }
 
 /// Lets the user drag the floor beside a body that stands in `body`.

@@ -1,6 +1,6 @@
 //! Sources that are dragged to knobs, of any face, which they then modulate. egui keeps what is dragged.
 
-use super::{AMOUNT, add, can_move, free_place, put, source_name};
+use super::{AMOUNT, add, can_move, free_place, place_of, put, source_name};
 use crate::editor::controls::{Controls, Held, Hint, Said};
 use crate::editor::widgets::carried;
 use egui::{DragAndDrop, Pos2, Rect, Ui, vec2};
@@ -131,8 +131,8 @@ impl Held {
 fn take(source: Source, info: &'static ParamInfo, at: Pos2, controls: &mut Controls) -> Option<Held> {
     let Playable::Preset(preset) = controls.params.state().playable else { return None };
     let route = Route::linear(source, info.param);
-    let old = preset.patch.routes.iter().find(|(_, old)| Route { response: route.response, ..*old } == route);
-    let place = old.map(|(place, _)| place).or(free_place(&preset.patch.routes))?;
+    let old = place_of(&route, &preset.patch.routes);
+    let place = old.or(free_place(&preset.patch.routes))?;
     let amount = amount_param(place).info();
     let before = (controls.value(amount), controls.position(amount));
     controls.release();

@@ -70,17 +70,17 @@ fn amount_text(route: &Route, amount: f32, info: &ParamInfo) -> String {
 
 /// The modulation of a parameter, as a knob shows it.
 #[derive(Default)]
-pub(super) struct Ring {
+pub(super) struct Ring<'a> {
     /// The parts of its travel that routes can move it to: by each amount, to both sides if the source has both.
     pub(super) ranges: Vec<[f32; 2]>,
     /// The modulated position in each sounding note, the newest note first.
     pub(super) marks: Vec<f32>,
-    /// What moves it and how far, in words; empty for nothing.
-    pub(super) movers: String,
+    /// The routes, and the names of their sources; none where nothing is said of them.
+    routes: Option<(&'a Routes, &'a Guide)>,
 }
 
-impl Ring {
-    pub(super) fn of(info: &ParamInfo, (routes, guide): (&Routes, &Guide), controls: &Controls) -> Self {
+impl<'a> Ring<'a> {
+    pub(super) fn of(info: &ParamInfo, (routes, guide): (&'a Routes, &'a Guide), controls: &Controls) -> Self {
         // Where the knob says by how much a value is moved, the value itself has no place on it.
         if controls.own(info).is_some() {
             return Self::default();
@@ -91,17 +91,27 @@ impl Ring {
             let from = if goes_both_ways(&route) { position - amount } else { position };
             [from, position + amount].map(|end| end.clamp(0.0, 1.0))
         };
-        let these = || routes.iter().filter(|(_, route)| route.destination == info.param);
-        let ranges = these().map(range).filter(|[from, to]| from != to).collect();
+        let ranges = to(info, routes).map(range).filter(|[from, to]| from != to).collect();
+        let marks = controls.modulated(info).map(|value| info.normalise(value) as f32).collect();
+        Self { ranges, marks, routes: Some((routes, guide)) }
+    }
+
+    /// What moves a parameter and how far, in words; none if nothing does.
+    pub(super) fn movers(&self, info: &ParamInfo, controls: &Controls) -> Option<String> {
+        let (routes, guide) = self.routes?;
         let mover = |(place, route): (usize, Route)| {
             let (info, amount) = (amount_param(place).info(), controls.value(amount_param(place).info()));
             (amount != 0.0)
                 .then(|| format!("{} {}", source_name(route.source, guide), amount_text(&route, amount, info)))
         };
-        let movers = these().filter_map(mover).collect::<Vec<_>>().join(", ");
-        let marks = controls.modulated(info).map(|value| info.normalise(value) as f32).collect();
-        Self { ranges, marks, movers }
+        let movers: Vec<String> = to(info, routes).filter_map(mover).collect();
+        (!movers.is_empty()).then(|| movers.join(", "))
     }
+}
+
+/// The routes that move a parameter.
+fn to(info: &ParamInfo, routes: &Routes) -> impl Iterator<Item = (usize, Route)> {
+    routes.iter().filter(|(_, route)| route.destination == info.param)
 }
 
 /// Where each sounding note is on the bar of a route, from 0 to 1, the newest note first.
@@ -211,13 +221,18 @@ pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
     });
 }
 
+/// The place of a route that moves the same by the same, whatever its curve.
+fn place_of(route: &Route, routes: &Routes) -> Option<usize> {
+    let mut all = routes.iter();
+    all.find(|(_, other)| Route { response: route.response, ..*other } == *route).map(|(place, _)| place)
+}
+
 /// Adds a route with an amount, unless there is one. Returns a message.
 fn add(route: Route, amount: f32, controls: &mut Controls) -> Said {
     let Playable::Preset(preset) = controls.params.state().playable else { return Err(OF_KITS.to_owned()) };
     let (routes, info) = (&preset.patch.routes, route.destination.info());
     let name = source_name(route.source, &preset.guide);
-    let is_this = |other: &Route| Route { response: route.response, ..*other } == route;
-    if let Some((place, _)) = routes.iter().find(|(_, other)| is_this(other)) {
+    if let Some(place) = place_of(&route, routes) {
         let by = controls.text(amount_param(place).info());
         return Ok(format!("{name} moves {} already, by {by}: rest on the knob with it to change that", info.name));
     }

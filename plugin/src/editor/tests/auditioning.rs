@@ -27,6 +27,12 @@ impl Stage {
     }
 }
 
+/// Counts the strikes since it was asked last.
+fn strikes(stage: &Stage) -> impl FnMut() -> usize + use<> {
+    let mut touches = stage.params.link().connect(48_000.0);
+    move || std::iter::from_fn(|| touches.pop().ok()).filter(|touch| matches!(touch, Touch::Down { .. })).count()
+}
+
 /// The browser with the mallets, which stand on more than two shelves, their names, and how many stand on one.
 fn mallets() -> (Stage, Vec<String>, usize) {
     let mut stage = stage("Kick", SIZE, 1.0, Theme::Dark);
@@ -78,9 +84,7 @@ fn arrows_lead_along_the_shelves() {
 #[test]
 fn left_and_right_belong_to_the_words_and_space_plays_again_where_there_are_none() {
     let mut stage = stage("Church Bell", SIZE, 1.0, Theme::Dark);
-    let mut touches = stage.params.link().connect(48_000.0);
-    let mut strikes =
-        || std::iter::from_fn(|| touches.pop().ok()).filter(|touch| matches!(touch, Touch::Down { .. })).count();
+    let mut strikes = strikes(&stage);
     stage.button("Browse");
     stage.press_key(Key::ArrowRight);
     assert!(stage.params.name() != "Church Bell" && strikes() == 1, "the search is empty");
@@ -105,9 +109,7 @@ fn left_and_right_belong_to_the_words_and_space_plays_again_where_there_are_none
 #[test]
 fn after_a_click_the_keys_are_those_of_the_list_although_words_are_searched_for() {
     let mut stage = stage("Church Bell", SIZE, 1.0, Theme::Dark);
-    let mut touches = stage.params.link().connect(48_000.0);
-    let mut strikes =
-        || std::iter::from_fn(|| touches.pop().ok()).filter(|touch| matches!(touch, Touch::Down { .. })).count();
+    let mut strikes = strikes(&stage);
     stage.button("Browse");
     stage.type_text("marimba");
     let names = stage.names();
@@ -229,9 +231,7 @@ fn the_sound_of_a_pad_comes_back_to_its_pad() {
 #[test]
 fn the_arrows_in_the_header_walk_the_list_of_the_browser_and_play() {
     let mut stage = stage("Kick", SIZE, 1.0, Theme::Dark);
-    let mut touches = stage.params.link().connect(48_000.0);
-    let mut strikes =
-        || std::iter::from_fn(|| touches.pop().ok()).filter(|touch| matches!(touch, Touch::Down { .. })).count();
+    let mut strikes = strikes(&stage);
     stage.button("Browse");
     stage.button("Show Mallet");
     stage.button("Only wood");

@@ -22,7 +22,7 @@ pub(crate) struct Face<'a> {
     /// Offset of the position by the host's modulation.
     pub(crate) offset: f32,
     /// The modulation by the sound's routes, and the modulated values in the sounding notes.
-    pub(crate) ring: &'a Ring,
+    pub(crate) ring: &'a Ring<'a>,
     pub(crate) is_hovered: bool,
     pub(crate) is_focused: bool,
 }

@@ -117,8 +117,9 @@ pub(crate) fn show(
 ) {
     let parts = Parts::of(cell, side);
     let turned = turn(ui, cell.with_max_y(parts.value.top()), parts.value, TRAVEL, info, controls);
-    if let Some(hint) = controls.hint.as_mut().filter(|_| turned.is_hovered && !ring.movers.is_empty()) {
-        hint.help = format!("Moved by {}. {}", ring.movers, hint.help);
+    let movers = if turned.is_hovered { ring.movers(info, controls) } else { None };
+    if let (Some(movers), Some(hint)) = (movers, controls.hint.as_mut()) {
+        hint.help = format!("Moved by {movers}. {}", hint.help);
     }
     let palette = controls.palette;
     let opacity = ui.opacity();
