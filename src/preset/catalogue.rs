@@ -155,7 +155,7 @@ pub fn tags_to_save(playable: &Playable) -> Vec<String> {
 
 /// The factory preset whose description a preset still has, although it is another sound now.
 fn origin(preset: &Preset) -> Option<&'static Preset> {
-    let of = Preset::factory().iter().find(|other| !other.comment.is_empty() && other.comment == preset.comment)?;
+    let of = Preset::described(&preset.comment)?;
     (of.patch != preset.patch || of.tuning != preset.tuning).then_some(of)
 }
 

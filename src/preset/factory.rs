@@ -24,6 +24,11 @@ fn kit((origin, text): &(&str, &str)) -> Result<KitPreset> {
     }
 }
 
+/// Whether a file contains this comment. No other preset can have it, so no other is read. What TOML may escape is left out.
+fn tells(text: &str, comment: &str) -> bool {
+    comment.split(['"', '\\']).all(|part| text.contains(part))
+}
+
 /// Indices of the files that are named like the preset or kit `name`. No other file can contain it, so no other is read.
 fn called<'a>(name: &str, files: &'a [(&str, &str)]) -> impl Iterator<Item = usize> + 'a {
     let slug = slug(name);
@@ -41,6 +46,12 @@ impl Preset {
     /// The preset at a place of [`Preset::factory`]; none beyond the last. Reads only this preset, on its first use.
     pub fn factory_at(place: usize) -> Option<&'static Preset> {
         (place < PRESETS.len()).then(|| preset(place))
+    }
+
+    /// The first factory preset with this comment, unless that is empty. Reads only presets that may have it.
+    pub(super) fn described(comment: &str) -> Option<&'static Preset> {
+        let mut files = PRESETS.iter().enumerate().filter(|(_, (_, text))| !comment.is_empty() && tells(text, comment));
+        files.find_map(|(place, _)| Some(preset(place)).filter(|preset| preset.comment == comment))
     }
 
     /// The factory preset of this name; case does not matter.
@@ -117,6 +128,7 @@ mod tests {
         assert!(Preset::find("").is_err());
         for (place, preset) in Preset::factory().iter().enumerate() {
             assert_eq!(Preset::factory_at(place), Some(preset));
+            assert_eq!(Preset::described(&preset.comment).is_some(), !preset.comment.is_empty(), "{}", preset.name);
         }
         assert_eq!(Preset::factory_at(Preset::factory().len()), None);
         for kit in KitPreset::factory() {

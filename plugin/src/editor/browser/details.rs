@@ -48,7 +48,7 @@ impl About {
     /// that is.
     fn of(controls: &Controls) -> Self {
         let sound = controls.params.state().into_sound();
-        let factory = Preset::factory().first().map_or("", |preset| preset.author.as_str());
+        let factory = Preset::factory_at(0).map_or("", |preset| preset.author.as_str());
         let author = Some(sound.author()).filter(|author| *author != factory).unwrap_or_default();
         let [comment, details] = match made_from(&sound) {
             Some(name) => [format!("Made from {name}."), String::new()],

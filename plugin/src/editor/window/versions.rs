@@ -83,7 +83,7 @@ mod tests {
         versions.copy((params.state(), false));
         assert!(!versions.differ(&params));
         let described =
-            Preset { comment: "Another".to_owned(), author: "Me".to_owned(), ..Preset::clone(&Preset::factory()[0]) };
+            Preset { comment: "Another".to_owned(), author: "Me".to_owned(), ..Preset::find("Init").unwrap().clone() };
         params.describe_as(&Playable::Preset(described));
         let knob = &params.knobs()[Param::Decay as usize];
         let before = knob.position();
