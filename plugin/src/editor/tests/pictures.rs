@@ -96,6 +96,8 @@ fn open(
             // What a real window is cleared with.
             let ground = shown.view().theme.palette().ground;
             ui.painter().rect_filled(ui.ctx().content_rect(), 0.0, ground);
+            // Two things with one identity would be seen in a picture.
+            ui.ctx().options_mut(|options| options.warn_on_id_clash = true);
             window.contents(ui, &context);
         });
     harness.run_steps(3);
