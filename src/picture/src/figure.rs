@@ -7,6 +7,7 @@ use emath::Rect;
 use sprung::preset::Family;
 use sprung::sound::bodies::{BedKind, Body, Model, Point};
 use sprung::sound::pairs::{Link, Pair};
+use std::hash::{Hash, Hasher};
 
 /// What is painted of a body.
 pub struct Figure {
@@ -30,6 +31,14 @@ pub(crate) struct Second {
     pub figure: Figure,
     /// Whether the two move together where they are joined.
     pub is_rigid: bool,
+}
+
+/// By what it looks like: figures that are painted alike have the same, and their points follow from form and grid.
+impl Hash for Figure {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        format!("{:?}", (self.form, self.grid, self.finish, self.build, self.drum)).hash(state);
+        self.second.as_ref().map(|second| (&second.figure, second.is_rigid)).hash(state);
+    }
 }
 
 /// How a body is built around its points.
@@ -243,5 +252,32 @@ impl Figure {
         };
         let build = Build::of(&body.model);
         Self { form, grid, points: Form::points(grid), finish, build, drum: None, second: None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Picture, Pose};
+    use ecolor::Color32;
+    use emath::{Pos2, vec2};
+    use sprung::sound::bodies::MATERIALS;
+    use std::collections::HashMap;
+    use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
+
+    #[test]
+    fn figures_with_one_hash_are_painted_alike() {
+        let hash = |figure: &Figure| BuildHasherDefault::<DefaultHasher>::default().hash_one(figure);
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(60.0, 40.0));
+        let mut pictures = HashMap::new();
+        let families = [None, Some(Family::Kick), Some(Family::Snare), Some(Family::Hat), Some(Family::Bell)];
+        for (_, model) in Model::ALL {
+            for (material, family) in MATERIALS.iter().flat_map(|material| families.map(|family| (*material, family))) {
+                let figure = Figure::small(&Body { material, ..Body::new(model.clone()) }).told_apart(family, &[]);
+                let picture = format!("{:?}", Picture::of(rect, &figure, &Pose::default(), Color32::WHITE));
+                assert_eq!(pictures.entry(hash(&figure)).or_insert_with(|| picture.clone()), &picture, "{model:?}");
+            }
+        }
+        assert!(pictures.len() > 100);
     }
 }

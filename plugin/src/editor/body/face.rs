@@ -2,9 +2,11 @@
 
 use crate::editor::theme::{Palette, SMALL};
 use crate::editor::widgets::text::{line, width};
+use egui::cache::{ComputerMut, FrameCache};
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use sprung_picture::{Figure, Ink, Picture, Pose};
+use std::hash::{Hash, Hasher};
 
 /// Space around a body, for its handles and for the frame that says that it is only a guess.
 const AROUND: f32 = 14.0;
@@ -24,7 +26,7 @@ pub(super) fn paint_guess(painter: &Painter, frame: Rect, palette: &Palette) {
 pub(crate) fn paint(painter: &Painter, rect: Rect, figure: &Figure, pose: &Pose, palette: &Palette) -> Option<Pos2> {
     let picture = Picture::of(rect, figure, pose, palette.accent);
     let struck = picture.strike;
-    paint_picture(painter, picture, palette);
+    painter.extend(shapes(picture, palette));
     struck
 }
 
@@ -79,35 +81,73 @@ fn name(painter: &Painter, at: Pos2, name: &str, palette: &Palette) {
 
 /// Paints a body at rest.
 pub(crate) fn paint_still(painter: &Painter, rect: Rect, figure: &Figure, palette: &Palette) {
-    let _ = paint(painter, rect, figure, &Pose::default(), palette);
+    Still { rect, figure, palette, stands: false }.paint(painter);
 }
 
 /// Paints a body that stands on the lower edge of the rectangle.
 pub(crate) fn paint_standing(painter: &Painter, rect: Rect, figure: &Figure, palette: &Palette) {
-    let picture = Picture::of(rect, figure, &Pose::default(), palette.accent);
-    paint_picture(painter, picture.standing(rect.bottom()), palette);
+    Still { rect, figure, palette, stands: true }.paint(painter);
 }
 
-fn paint_picture(painter: &Painter, picture: Picture, palette: &Palette) {
+/// A body at rest.
+#[derive(Clone, Copy)]
+struct Still<'a> {
+    rect: Rect,
+    figure: &'a Figure,
+    palette: &'a Palette,
+    /// Whether it stands on the lower edge of the rectangle.
+    stands: bool,
+}
+
+impl Still<'_> {
+    /// Its shapes are made once for as long as it is seen.
+    fn paint(self, painter: &Painter) {
+        let shapes = painter.ctx().memory_mut(|memory| memory.caches.cache::<Seen>().get(self).clone());
+        painter.extend(shapes);
+    }
+}
+
+/// By what is seen of it.
+impl Hash for Still<'_> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        let corners = [self.rect.min, self.rect.max].map(|corner| [corner.x.to_bits(), corner.y.to_bits()]);
+        let Palette { accent, line, muted, text, .. } = self.palette;
+        (corners, self.figure, [accent, line, muted, text], self.stands).hash(state);
+    }
+}
+
+/// The shapes of the bodies at rest that were seen in the last frame.
+type Seen = FrameCache<Vec<Shape>, ShapesOfStill>;
+
+#[derive(Default)]
+struct ShapesOfStill;
+
+impl ComputerMut<Still<'_>, Vec<Shape>> for ShapesOfStill {
+    fn compute(&mut self, Still { rect, figure, palette, stands }: Still) -> Vec<Shape> {
+        let picture = Picture::of(rect, figure, &Pose::default(), palette.accent);
+        shapes(if stands { picture.standing(rect.bottom()) } else { picture }, palette)
+    }
+}
+
+fn shapes(picture: Picture, palette: &Palette) -> Vec<Shape> {
+    let mut shapes = Vec::new();
     if let [first, .., last] = picture.string[..] {
-        painter.line_segment([first, last], Stroke::new(1.0, palette.line));
-        for end in [first, last] {
-            painter.circle_filled(end, 3.0, palette.muted);
-        }
-        painter.add(Shape::line(picture.string, Stroke::new(2.5, palette.accent)));
+        shapes.push(Shape::line_segment([first, last], Stroke::new(1.0, palette.line)));
+        shapes.extend([first, last].map(|end| Shape::circle_filled(end, 3.0, palette.muted)));
+        shapes.push(Shape::line(picture.string, Stroke::new(2.5, palette.accent)));
     }
-    for (ends, colour) in picture.outline {
-        painter.line_segment(ends, Stroke::new(1.0, colour));
-    }
+    let edge = |(ends, colour)| Shape::line_segment(ends, Stroke::new(1.0, colour));
+    shapes.extend(picture.outline.into_iter().map(edge));
     let vertices = picture.vertices.into_iter().map(|(pos, color)| Vertex { pos, uv: WHITE_UV, color }).collect();
-    painter.add(Mesh { vertices, indices: picture.triangles.concat(), ..Mesh::default() });
-    for (ink, points) in picture.lines {
+    shapes.push(Shape::mesh(Mesh { vertices, indices: picture.triangles.concat(), ..Mesh::default() }));
+    shapes.extend(picture.lines.into_iter().map(|(ink, points)| {
         let stroke = match ink {
             Ink::Edge => Stroke::new(1.2, palette.text.gamma_multiply(0.5)),
             Ink::Fine => Stroke::new(1.0, palette.text.gamma_multiply(0.25)),
             Ink::Node => Stroke::new(1.0, palette.text.gamma_multiply(0.6)),
             Ink::Joint => Stroke::new(1.3, palette.muted),
         };
-        painter.add(Shape::line(points, stroke));
-    }
+        Shape::line(points, stroke)
+    }));
+    shapes
 }

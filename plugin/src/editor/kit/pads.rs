@@ -298,9 +298,13 @@ impl Face<'_> {
         if let Some(figure) = self.figure.filter(|_| picture.height() >= 10.0) {
             let at = place(picture);
             paint_glow(painter, picture.expand(4.0), strength, palette);
-            let moved = self.sounding.map_or(Vec::new(), |(pad, shape)| pad.displacements_of(figure, shape, at));
-            let pose = Pose { displacements: &moved, ..Pose::default() };
-            let _ = face::paint(painter, at, figure, &pose, palette);
+            match self.sounding {
+                Some((pad, shape)) => {
+                    let displacements = &pad.displacements_of(figure, shape, at);
+                    let _ = face::paint(painter, at, figure, &Pose { displacements, ..Pose::default() }, palette);
+                }
+                None => face::paint_still(painter, at, figure, palette),
+            }
         }
         // Its level as a bar, and its place between left and right as a dot.
         let split = bar.left() + 0.62 * bar.width();
