@@ -24,8 +24,8 @@ fn kit((origin, text): &(&str, &str)) -> Result<KitPreset> {
     }
 }
 
-/// Whether a file contains this comment. No other preset can have it, so no other is read. What TOML may escape is left out.
-fn tells(text: &str, comment: &str) -> bool {
+/// Whether a file may have this comment: it has all of it but for what TOML can escape.
+fn may_have(text: &str, comment: &str) -> bool {
     comment.split(['"', '\\']).all(|part| text.contains(part))
 }
 
@@ -48,9 +48,9 @@ impl Preset {
         (place < PRESETS.len()).then(|| preset(place))
     }
 
-    /// The first factory preset with this comment, unless that is empty. Reads only presets that may have it.
+    /// The first factory preset with this comment, unless that is empty. Reads only files that may have it.
     pub(super) fn described(comment: &str) -> Option<&'static Preset> {
-        let mut files = PRESETS.iter().enumerate().filter(|(_, (_, text))| !comment.is_empty() && tells(text, comment));
+        let mut files = PRESETS.iter().enumerate().filter(|(_, (_, text))| !comment.is_empty() && may_have(text, comment));
         files.find_map(|(place, _)| Some(preset(place)).filter(|preset| preset.comment == comment))
     }
 

@@ -33,7 +33,7 @@ pub(crate) struct Second {
     pub is_rigid: bool,
 }
 
-/// By what it looks like: figures that are painted alike have the same, and their points follow from form and grid.
+/// By what it looks like: figures with one hash are painted alike. Points follow from form and grid.
 impl Hash for Figure {
     fn hash<H: Hasher>(&self, state: &mut H) {
         format!("{:?}", (self.form, self.grid, self.finish, self.build, self.drum)).hash(state);
