@@ -149,8 +149,8 @@ fn execute(command: &Command) -> Result<()> {
         #[cfg(not(feature = "play"))]
         Command::Play { .. } => Err(sprung::Error::value(
             "play",
-            "this sprung was built without sound devices: expected one built with ‘cargo build --features play’; \
-             ‘sprung render’ writes a file",
+            "this sprung was built without sound devices: expected one of \
+             ‘cargo install --locked --path src/cli --features play’; ‘sprung render’ writes a file",
         )),
         Command::Presets(args) => presets::run(args),
         Command::Sample(args) => sample::run(args),

@@ -50,7 +50,8 @@ impl Preset {
 
     /// The first factory preset with this comment, unless that is empty. Reads only files that may have it.
     pub(super) fn described(comment: &str) -> Option<&'static Preset> {
-        let mut files = PRESETS.iter().enumerate().filter(|(_, (_, text))| !comment.is_empty() && may_have(text, comment));
+        let mut files =
+            PRESETS.iter().enumerate().filter(|(_, (_, text))| !comment.is_empty() && may_have(text, comment));
         files.find_map(|(place, _)| Some(preset(place)).filter(|preset| preset.comment == comment))
     }
 

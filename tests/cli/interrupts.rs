@@ -118,7 +118,7 @@ fn an_interrupted_audition_says_what_it_has_written() {
         let all = Preset::factory().len() + KitPreset::factory().len();
         let expected = match sounds {
             0 => "nothing incomplete was written".to_owned(),
-            _ => format!("{sounds} of {all} sounds are in page, without a page"),
+            _ => format!("{sounds} of {all} sounds are in page, without a page; --force makes all of them anew"),
         };
         assert_eq!(said, format!("sprung: error: interrupted; {expected}\n"));
         assert_eq!(sandbox.path("page").exists(), sounds > 0, "an empty folder does not remain");

@@ -75,6 +75,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         if matches!(error, Error::Interrupted) && done > 0 {
             let left =
                 format!("{done} of {} are in {}, without a page", counted(found.len(), "sound"), args.out.display());
+            let left = format!("{left}; --force makes all of them anew");
             return Error::InterruptedAfter { left };
         }
         if is_new {
