@@ -73,9 +73,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
     page(&found, args, &done).map_err(|error| {
         let done = done.load(Ordering::Relaxed);
         if matches!(error, Error::Interrupted) && done > 0 {
-            let left =
-                format!("{done} of {} are in {}, without a page", counted(found.len(), "sound"), args.out.display());
-            let left = format!("{left}; --force makes all of them anew");
+            let (all, out) = (counted(found.len(), "sound"), args.out.display());
+            let left = format!("{done} of {all} are in {out}, without a page; --force makes all of them anew");
             return Error::InterruptedAfter { left };
         }
         if is_new {

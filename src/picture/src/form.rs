@@ -44,13 +44,6 @@ struct Place {
     normal: [f32; 3],
 }
 
-impl Place {
-    /// Whether it faces away from the viewer.
-    fn is_away(self) -> bool {
-        self.normal[1] < -0.05
-    }
-}
-
 impl Form {
     /// The form of a model.
     pub fn of(model: &Model) -> Self {
@@ -228,12 +221,11 @@ impl Form {
 
     /// Whether a point lies behind others, so that its lines are not drawn and it cannot be touched.
     pub fn is_behind(self, point: Point) -> bool {
-        self.has_back() && self.place(point).is_away()
+        self.hides(&self.place(point))
     }
 
-    /// Whether some of its points lie behind others.
-    fn has_back(self) -> bool {
-        self.is_bell() || self.is_open()
+    fn hides(self, place: &Place) -> bool {
+        (self.is_bell() || self.is_open()) && place.normal[1] < -0.05
     }
 
     /// The point at rest that is nearest to a place in the picture, and how far away it is in pixels.
@@ -258,7 +250,7 @@ impl Form {
         for point in (0..(STEPS + 1) * rows).map(point) {
             let there = self.place(point);
             let distance = far(there.at);
-            if distance < best.1 && !(self.has_back() && there.is_away()) {
+            if distance < best.1 && !self.hides(&there) {
                 best = (point, distance);
             }
         }
