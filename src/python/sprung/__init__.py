@@ -196,8 +196,11 @@ def render(
 
     The other options are those of ``sprung render``: ``velocity``, ``length``, ``tail``, ``rate``, ``seed``, ``mono``,
     ``gain_db``, ``mix_gain_db``, ``normalize``, ``scale``, ``keymap``, ``input``, ``programs``, ``lenient``,
-    ``tempo``, ``transpose``, ``solo``, ``mute``.
+    ``tempo``, ``transpose``, ``solo``, ``mute``. Parameters stand in ``set``: ``set={"decay": "250 ms"}``.
     """
+    for name, value in (("set", set), ("channel", channel)):
+        if value is not None and not isinstance(value, Mapping):
+            raise Error(f"{name}: a {type(value).__name__}: expected a mapping, such as set={{'decay': '250 ms'}}")
     with ExitStack() as stack:
         given: dict[str, Any] = dict(options)
         if preset is not None:

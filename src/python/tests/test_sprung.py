@@ -84,6 +84,7 @@ def test_errors_are_those_of_the_command() -> None:
         ({"velocity": 0}, "velocity: 0 is out of range: expected 1 to 127"),
         ({"velocty": 3}, "velocty: there is no option ‘velocty’; the nearest is ‘velocity’"),
         ({"set": {"decay": "2 m"}}, "decay: ‘2 m’ is not a number in s"),
+        ({"set": "decay=250 ms"}, "set: a str: expected a mapping"),
         ({"song": "a.mid"}, "expected either a song or notes"),
     ]
     for options, message in wrong:
