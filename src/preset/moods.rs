@@ -24,8 +24,8 @@ const BEATS: [f64; 2] = [0.7, 7.0];
 const ROUGH: f64 = 27.0;
 /// Least drive that is rough, in decibels.
 const DRIVEN: f32 = 6.0;
-/// Least turbulence of breath, in per cent, and least route that raises held noise as the tone stands: breathy (6 %).
-const BREATHY: f32 = 1.0;
+/// Least turbulence of breath, in per cent, and least route that raises held noise as the tone stands: breathy (5 %).
+const BREATHY: f32 = 0.9;
 const RAISED: f32 = 30.0;
 /// Mean distance of the modes from the middle, by their energy: wide (19 %).
 const WIDE: f64 = 0.4;
