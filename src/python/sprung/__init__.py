@@ -198,9 +198,9 @@ def render(
     ``gain_db``, ``mix_gain_db``, ``normalize``, ``scale``, ``keymap``, ``input``, ``programs``, ``lenient``,
     ``tempo``, ``transpose``, ``solo``, ``mute``. Parameters stand in ``set``: ``set={"decay": "250 ms"}``.
     """
-    for name, value in (("set", set), ("channel", channel)):
+    for name, value, right in (("set", set, {"decay": "250 ms"}), ("channel", channel, {10: "Marimba"})):
         if value is not None and not isinstance(value, Mapping):
-            raise Error(f"{name}: a {type(value).__name__}: expected a mapping, such as set={{'decay': '250 ms'}}")
+            raise Error(f"{name}: a {type(value).__name__}: expected a mapping, such as {right}")
     with ExitStack() as stack:
         given: dict[str, Any] = dict(options)
         if preset is not None:
