@@ -134,18 +134,27 @@ impl LogMel {
         self.columns.iter().flatten().copied().fold(SILENCE_DB, f64::max)
     }
 
-    /// Mean difference from another sound in dB, over all bands and windows in which at least one sound is within
-    /// [`SPAN_DB`] of the loudest band of both. Lower levels are raised to the lower end of that range. 0 if both are
-    /// silent.
+    /// Mean difference from another sound in dB, as [`LogMel::outside`] has it.
     pub(crate) fn distance(&self, other: &LogMel) -> f64 {
-        let floor = self.loudest().max(other.loudest()) - SPAN_DB;
+        self.outside([other, other])
+    }
+
+    /// How far this sound lies outside two others in dB: the mean over all bands and windows in which at least one sound is
+    /// within [`SPAN_DB`] of the loudest band of all. Lower levels are raised to the lower end of that range. 0 if all are
+    /// silent.
+    pub(crate) fn outside(&self, others: [&LogMel; 2]) -> f64 {
+        let sounds = [self, others[0], others[1]];
+        let floor = sounds.iter().map(|sound| sound.loudest()).fold(SILENCE_DB, f64::max) - SPAN_DB;
         let silence = [SILENCE_DB; BANDS];
         let (mut sum, mut count) = (0.0, 0);
-        for n in 0..self.columns.len().max(other.columns.len()) {
-            let [a, b] = [self, other].map(|sound| sound.columns.get(n).unwrap_or(&silence));
-            for (a, b) in a.iter().zip(b).filter(|(a, b)| a.max(**b) > floor) {
-                sum += (a.max(floor) - b.max(floor)).abs();
-                count += 1;
+        for n in 0..sounds.iter().map(|sound| sound.columns.len()).max().unwrap_or(0) {
+            let columns = sounds.map(|sound| sound.columns.get(n).unwrap_or(&silence));
+            for levels in (0..BANDS).map(|band| columns.map(|column| column[band])) {
+                if levels.iter().any(|level| *level > floor) {
+                    let [own, one, other] = levels.map(|level| level.max(floor));
+                    sum += (one.min(other) - own).max(own - one.max(other)).max(0.0);
+                    count += 1;
+                }
             }
         }
         if count == 0 { 0.0 } else { sum / f64::from(count) }

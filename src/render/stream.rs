@@ -17,9 +17,9 @@ impl Job<'_> {
     ///
     /// For each block of what comes before [`Job::from`], `sink` gets an empty one, so that it can end the work there too.
     ///
-    /// Blocks of 512 frames and more are shared between the threads of the current Rayon pool (see
-    /// [`on_threads`](super::on_threads)): channels and notes are rendered in parallel, and the next block is rendered while
-    /// `sink` works on one. The samples do not depend on this, and `sink` receives the blocks in order.
+    /// Blocks of 512 frames and more are shared between the threads of the current Rayon pool: channels and notes are rendered
+    /// in parallel, and the next block is rendered while `sink` works on one. The samples do not depend on this, and `sink`
+    /// receives the blocks in order.
     ///
     /// # Errors
     /// [`Error::Value`](crate::Error::Value) if an option is out of range, and the errors of `sink`.

@@ -5,6 +5,7 @@
 
 pub mod held;
 pub mod octaves;
+pub mod picture;
 pub mod preset;
 pub mod recordings;
 

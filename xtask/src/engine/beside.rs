@@ -1,9 +1,11 @@
 //! `cargo xtask measure --beside`: where the factory's sounds of General MIDI stand beside two soundfonts.
 
 use sprung::internals::measures::from_onset;
+use sprung::internals::measures::picture::{HELD as PICTURED, Picture};
 use sprung::internals::measures::preset::{is_sustained, measure, of_sound};
-use sprung::io::sound_file;
+use sprung::io::{Song, sound_file};
 use sprung::preset::{Preset, Programs};
+use sprung::render::{Job, Options, Tail};
 use sprung::units::frequency_from_key;
 use std::fs::{self, File};
 use std::path::Path;
@@ -21,11 +23,14 @@ const DIFFER: [(&str, f64); 8] = [
     ("change of colour", 0.4),
 ];
 
-/// How long the note is held, in seconds, and its velocity: as those of the presets.
-const HELD: u32 = 4;
+/// How long the note of the figures is held, in seconds, and the velocity of all notes: as those of the presets.
+const HELD: f64 = 4.0;
 const VELOCITY: u8 = 100;
 
-/// Prints a table of all programs, and how often a figure of ours lies outside both.
+/// The keys of which pictures are compared.
+const PICTURED_KEYS: [u8; 3] = [48, 60, 72];
+
+/// Prints a table of all programs, how often a figure of ours lies outside both, and how far our pictures do.
 pub(crate) fn run(fonts: [&Path; 2]) -> Result<(), String> {
     for font in fonts {
         File::open(font).map_err(|error| format!("{}: {error}", font.display()))?;
@@ -36,7 +41,7 @@ pub(crate) fn run(fonts: [&Path; 2]) -> Result<(), String> {
         name(fonts[0]),
         name(fonts[1])
     );
-    let (mut outside, mut compared) = ([0; DIFFER.len()], [0; DIFFER.len()]);
+    let (mut outside, mut compared, mut pictures) = ([0; DIFFER.len()], [0; DIFFER.len()], vec![]);
     for program in 0..128 {
         let Some(sound) = Programs::general_midi().sound(program) else { continue };
         // Kits have no figures.
@@ -44,7 +49,7 @@ pub(crate) fn run(fonts: [&Path; 2]) -> Result<(), String> {
         let key = preset.guide.home;
         let pitch = is_sustained(preset).then(|| frequency_from_key(key.into(), 440.0));
         let own = measure(preset).map_err(|error| format!("{sound}: {error}"))?;
-        let theirs = fonts.map(|font| played(font, program, key, folder.path()));
+        let theirs = fonts.map(|font| played(font, &note(program, key, HELD), folder.path()));
         let theirs = theirs.into_iter().collect::<Result<Vec<_>, _>>()?;
         let theirs: Vec<_> = theirs.iter().map(|sound| of_sound(from_onset(sound), pitch)).collect();
         for (place, (figure, differ)) in DIFFER.iter().enumerate() {
@@ -61,21 +66,82 @@ pub(crate) fn run(fonts: [&Path; 2]) -> Result<(), String> {
             outside[place] += usize::from(verdict.ends_with("both"));
             println!("| {} | {sound} | {figure} | {ours:.2} | {one:.2} | {other:.2} | {verdict} |", program + 1);
         }
+        let notes = PICTURED_KEYS.map(|key| note(program, key, PICTURED));
+        let ours = notes.iter().map(|note| ours(note, preset)).collect::<Result<_, _>>()?;
+        let theirs = |font| {
+            notes.iter().map(|note| played(font, note, folder.path()).map(|sound| Picture::new(&sound))).collect()
+        };
+        let [one, other]: [Result<Vec<_>, String>; 2] = fonts.map(theirs);
+        pictures.push(Pictured { program, preset: sound, of: [ours, one?, other?] });
     }
     for ((figure, _), (outside, compared)) in DIFFER.iter().zip(outside.iter().zip(compared)) {
         println!("{figure}: {outside} of {compared} outside both");
     }
+    print_pictures(fonts, &pictures);
     Ok(())
+}
+
+/// The notes of a program as pictures, one for each of the keys: ours, and those of the two fonts.
+struct Pictured {
+    program: u8,
+    preset: &'static str,
+    of: [Vec<Picture>; 3],
+}
+
+/// The mean distance in dB of the notes of a program from those of another.
+fn distance(ours: &[Picture], theirs: &[Picture]) -> f64 {
+    ours.iter().zip(theirs).map(|(ours, theirs)| ours.distance(theirs)).sum::<f64>() / ours.len() as f64
+}
+
+/// Prints how far each program's notes lie outside both fonts', and the place of its own program when a font's programs are in the order
+/// of their distance; then the same between the fonts, which says what a place is worth.
+fn print_pictures(fonts: [&Path; 2], all: &[Pictured]) {
+    let place = |who: usize, font: usize, own: &Pictured| {
+        let least = distance(&own.of[who], &own.of[font]);
+        all.iter().filter(|other| distance(&own.of[who], &other.of[font]) < least).count() + 1
+    };
+    let [one, other] = fonts.map(name);
+    println!("\n| program | preset | outside both, dB | place by {one} | by {other} |\n|--:|---|--:|--:|--:|");
+    let mut sum = 0.0;
+    for pictured @ Pictured { program, preset, of: [ours, first, second] } in all {
+        let outside = |n: usize| ours[n].outside([&first[n], &second[n]]);
+        let outside = (0..ours.len()).map(outside).sum::<f64>() / ours.len() as f64;
+        sum += outside;
+        println!(
+            "| {} | {preset} | {outside:.2} | {} | {} |",
+            program + 1,
+            place(0, 1, pictured),
+            place(0, 2, pictured)
+        );
+    }
+    println!("outside both: {:.2} dB on average", sum / all.len() as f64);
+    for (who, whose) in ["ours", one.as_str(), other.as_str()].iter().enumerate() {
+        for (font, by) in [(1, &one), (2, &other)].iter().filter(|(font, _)| *font != who) {
+            let near = all.iter().filter(|pictured| place(who, *font, pictured) <= 5).count();
+            println!("{whose} by {by}: own program among the nearest five in {near} of {}", all.len());
+        }
+    }
 }
 
 fn name(font: &Path) -> String {
     font.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// A note of a program on a soundfont, as one channel, without reverb and chorus.
-fn played(font: &Path, program: u8, key: u8, folder: &Path) -> Result<Vec<f32>, String> {
+/// The picture of a note of ours.
+fn ours(note: &[u8], preset: &Preset) -> Result<Picture, String> {
+    let played = || {
+        let (song, kit) = (Song::parse(note, "note.mid")?, preset.kit());
+        let options = Options { sample_rate: 44_100, tail: Tail::Seconds(1.0), ..Options::default() };
+        Job::new(&song, &kit, options).samples()
+    };
+    let [left, right] = played().map_err(|error| format!("{}: {error}", preset.name))?;
+    Ok(Picture::new(&left.iter().zip(&right).map(|(left, right)| 0.5 * (left + right)).collect::<Vec<_>>()))
+}
+
+/// A note on a soundfont, as one channel, without reverb and chorus.
+fn played(font: &Path, note: &[u8], folder: &Path) -> Result<Vec<f32>, String> {
     let [song, wav] = ["note.mid", "note.wav"].map(|name| folder.join(name));
-    fs::write(&song, note(program, key)).map_err(|error| format!("{}: {error}", song.display()))?;
+    fs::write(&song, note).map_err(|error| format!("{}: {error}", song.display()))?;
     let mut fluidsynth = Command::new("fluidsynth");
     fluidsynth.args(["-ni", "-R", "0", "-C", "0", "-g", "0.8", "-r", "44100", "-F"]).arg(&wav).arg(font).arg(&song);
     let status = fluidsynth.stdout(Stdio::null()).stderr(Stdio::null()).status();
@@ -91,10 +157,10 @@ fn played(font: &Path, program: u8, key: u8, folder: &Path) -> Result<Vec<f32>, 
     Ok((0..recording.frames()).map(mean).collect())
 }
 
-/// A MIDI file of one note of a program, at 120 beats a minute and 480 ticks a beat.
-fn note(program: u8, key: u8) -> Vec<u8> {
+/// A MIDI file of one note of a program, held for some seconds, at 120 beats a minute and 480 ticks a beat.
+fn note(program: u8, key: u8, held: f64) -> Vec<u8> {
     // The length of the note, in two bytes of seven bits.
-    let ticks = HELD * 960;
+    let ticks = (held * 960.0) as u32;
     let [high, low] = [(ticks >> 7) as u8 | 0x80, (ticks & 0x7f) as u8];
     let events =
         [&[0, 0xc0, program, 0, 0x90, key, VELOCITY][..], &[high, low, 0x80, key, 64], &[0x83, 0x60, 0xff, 0x2f, 0]]
@@ -106,11 +172,10 @@ fn note(program: u8, key: u8) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sprung::io::Song;
 
     #[test]
     fn a_note_is_a_song_of_its_length() {
-        let song = Song::parse(&note(13, 60), "note.mid").unwrap();
-        assert!((song.seconds - f64::from(HELD)).abs() < 0.51, "{}", song.seconds);
+        let song = Song::parse(&note(13, 60, HELD), "note.mid").unwrap();
+        assert!((song.seconds - HELD).abs() < 0.51, "{}", song.seconds);
     }
 }
