@@ -44,7 +44,9 @@ pub(crate) fn install(scope: Scope) -> Result<(), String> {
             .map_err(|message| explain(message, scope))?;
         println!("installed {}", to.display());
     }
-    println!("now let your DAW scan its plugins again");
+    println!(
+        "now let your DAW scan its plugins again (how: assets/manual/daw.md); without a DAW: cargo xtask standalone"
+    );
     Ok(())
 }
 

@@ -25,7 +25,10 @@ pub(super) fn open_first<T>(
     };
     match substitute(&first, open, systems) {
         Some(opened) => {
-            say(format!("not on the usual device: {error}"));
+            // Nobody misses a device that was never chosen.
+            if first.host.is_some() || first.device.is_some() {
+                say(format!("not on the usual device: {error}"));
+            }
             Ok(opened)
         }
         None => Err((error, Some(first))),
@@ -68,12 +71,12 @@ pub(super) fn choice(Chosen { host, device, rate, buffer, .. }: &Chosen) -> Choi
     Choice { host: host.clone(), device: device.clone(), rate: *rate, buffer: *buffer }
 }
 
-/// An error of a device as a line for the window, without the command-line options: the window lists the devices
-/// itself.
+/// An error of a device as a line for the window, without the options of the command line: the window lists the devices itself.
 pub(super) fn plain(error: &sprung::Error) -> String {
     let error = error.to_string();
     let message = error.split("; ‘--list’").next().unwrap_or(&error);
-    message.trim_start_matches("--").trim_end_matches('.').to_owned()
+    let of_option = message.split_once(": ").filter(|(option, _)| option.starts_with("--"));
+    of_option.map_or(message, |(_, what)| what).trim_end_matches('.').to_owned()
 }
 
 #[cfg(test)]
@@ -104,7 +107,7 @@ mod tests {
         assert_eq!(opened(&keys, &none, &[None, Some("jack")]), Ok(keys.clone()));
         let jack = Chosen { host: Some("jack".to_owned()), ..keys.clone() };
         assert_eq!(opened(&keys, &none, &[Some("jack")]), Ok(jack.clone()));
-        let silent = |waits: &Chosen| Err(("device: none".to_owned(), Some(waits.clone())));
+        let silent = |waits: &Chosen| Err(("none".to_owned(), Some(waits.clone())));
         assert_eq!(opened(&keys, &none, &[]), silent(&keys));
         let last = Chosen { host: Some("tape".to_owned()), rate: Some(96_000), ..keys.clone() };
         assert_eq!(opened(&none, &last, &[None]), Ok(keys.clone()), "its rate is that of the device");
@@ -132,6 +135,6 @@ mod tests {
     fn errors_name_no_options() {
         let error =
             sprung::Error::value("--device", "ALSA has no device ‘x’, or several; ‘--list’ shows them all".to_owned());
-        assert_eq!(plain(&error), "device: ALSA has no device ‘x’, or several");
+        assert_eq!(plain(&error), "ALSA has no device ‘x’, or several");
     }
 }

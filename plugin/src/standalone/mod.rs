@@ -127,7 +127,11 @@ fn start(args: Args) -> Result<(), String> {
     let closed = SprungEditor::new(params).run(Alone::context());
     is_closed.store(true, Relaxed);
     let ended = supervisor.join().map_err(|_| "the thread that looks after the device has failed".to_owned())?;
-    closed.map_err(|error| format!("the window cannot be shown: {error}"))?;
+    let has_display = !cfg!(target_os = "linux") || std::env::var_os("DISPLAY").is_some();
+    closed.map_err(|error| match has_display {
+        true => format!("the window cannot be shown: {error}"),
+        false => "the window cannot be shown: there is no X11 display, since DISPLAY is not set".to_owned(),
+    })?;
     ended
 }
 

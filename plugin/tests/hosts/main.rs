@@ -334,7 +334,7 @@ fn main() -> ExitCode {
             a_broken_state_is_set_aside
             what_is_missing_is_said
             without_a_sound_card_it_plays_on_the_server_or_waits_for_a_device
-            a_slash_searches
+            keys_search_and_undo_and_zoom
         }
         Program: minutes {
             the_first_five_minutes

@@ -185,9 +185,14 @@ pub(crate) fn it_keeps_its_state_whatever_ends_it() {
 const SLASH: u8 = 61;
 const GONG: [u8; 4] = [42, 32, 57, 42];
 const DOWN: u8 = 116;
+const ENTER: u8 = 36;
+const CONTROL: u8 = 37;
+const SHIFT: u8 = 50;
+const Z: u8 = 52;
+const EQUALS: u8 = 21;
 
-pub(crate) fn a_slash_searches() {
-    let stand = Stand::new("slash");
+pub(crate) fn keys_search_and_undo_and_zoom() {
+    let stand = Stand::new("keys");
     let (mut running, _) = stand.start(&["Marimba"]);
     // The window takes the keys with the first click.
     let empty = [550, 692];
@@ -197,7 +202,20 @@ pub(crate) fn a_slash_searches() {
         stand.onlooker.press_key(key);
         std::thread::sleep(Duration::from_millis(300));
     }
-    wait_until("a gong is found and loaded", || stand.state().is_file() && preset(&stand.state()).contains("Gong"));
+    let has = |name| stand.state().is_file() && preset(&stand.state()).contains(name);
+    wait_until("a gong is found and loaded", || has("Gong"));
+    stand.onlooker.press_key(ENTER);
+    let presses = |what: &str, keys: &[u8], so: &dyn Fn() -> bool| {
+        wait_until(what, || {
+            stand.onlooker.press_keys(keys);
+            std::thread::sleep(Duration::from_secs(1));
+            so()
+        });
+    };
+    presses("it is undone", &[CONTROL, Z], &|| has("Marimba"));
+    presses("it is done again", &[CONTROL, SHIFT, Z], &|| has("Gong"));
+    let is_larger = || std::fs::read_to_string(stand.state()).unwrap().contains("\"zoom\":");
+    presses("the window is larger", &[CONTROL, EQUALS], &is_larger);
     running.signal(libc::SIGINT);
     assert_eq!(running.ends().code(), Some(0));
 }

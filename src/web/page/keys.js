@@ -76,8 +76,15 @@ function pointers(place, play) {
 function computerKeys(place, play, keys) {
   const codes = new Map(ROWS.flatMap(([first, row]) => row.split(" ").map((code, n) => [code, first + n])));
   const down = new Map();
+  // The list that a pointer has chosen from: letters play notes there, arrows walk on. They search one that Tab has led to.
+  let pointed;
+  addEventListener("pointerdown", ({ target }) => (pointed = target.closest("select")));
   addEventListener("keydown", (event) => {
-    if (event.repeat || event.ctrlKey || event.metaKey || event.altKey || event.target.matches("select")) return;
+    if (event.key === "Tab") pointed = undefined;
+    // What plays a note and repeats must not search a list either.
+    if (down.has(event.code)) event.preventDefault();
+    const searches = event.target.matches("select") && event.target !== pointed;
+    if (event.repeat || event.ctrlKey || event.metaKey || event.altKey || searches) return;
     let key = codes.get(event.code);
     const focused = event.target.dataset?.key;
     // Arrows move along the keyboard; Enter and space play the key that has the focus.

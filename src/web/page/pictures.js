@@ -65,7 +65,9 @@ function drawModes(context, { width, height }, energies, ratios) {
   for (let octave = Math.ceil(low); octave <= high; octave++) {
     const x = ((octave - low) / (high - low)) * width;
     context.beginPath(), context.moveTo(x, top), context.lineTo(x, bottom), context.stroke();
-    context.fillText(octave < 0 ? `1/${2 ** -octave}` : `${2 ** octave}`, x + 4, height - 10);
+    const ratio = octave < 0 ? `1/${2 ** -octave}` : `${2 ** octave}`;
+    // The last octave may be so near to the edge that its label must stand further left.
+    context.fillText(ratio, Math.min(x + 4, width - context.measureText(ratio).width), height - 10);
   }
   sorted.forEach((n, place) => {
     const x = ((logs[place] - low) / (high - low)) * width;

@@ -1,8 +1,9 @@
-//! Edits of the library between the window and egui: files that are dropped, three more keys, and a window without the focus.
+//! Edits of the library between the window and egui: files that are dropped, more keys, and a window without the focus.
 
 use super::edit::{Edit, edit};
 
 const WINDOW: &str = "src/window.rs";
+const TRANSLATE: &str = "src/translate.rs";
 
 pub(super) const EDITS: &[Edit] = &[
     // The window's library reports files that are dragged and dropped. This library ignored them.
@@ -41,17 +42,31 @@ pub(super) const EDITS: &[Edit] = &[
     // host, since on Windows the system calls this code.
     edit(WINDOW, "            self.window.focus().unwrap();\n", "            let _ = self.window.focus();\n"),
     edit(WINDOW, "                    self.window.focus()?;\n", "                    let _ = self.window.focus();\n"),
-    // The slash, which searches, and the brackets, which choose the octave, were no keys.
+    // The slash, which searches, the brackets, which choose the octave, those that zoom, the manual's and that which names were no keys;
+    // nor was any letter with Shift.
     edit(
-        "src/translate.rs",
+        TRANSLATE,
         "            'z' => Key::Z,
 ",
         "            'z' => Key::Z,
             '/' => Key::Slash,
             '[' => Key::OpenBracket,
             ']' => Key::CloseBracket,
+            '+' => Key::Plus,
+            '-' => Key::Minus,
+            '=' => Key::Equals,
 ",
     ),
+    edit(
+        TRANSLATE,
+        "        K::Named(NamedKey::PageDown) => Key::PageDown,
+",
+        "        K::Named(NamedKey::PageDown) => Key::PageDown,
+        K::Named(NamedKey::F1) => Key::F1,
+        K::Named(NamedKey::F2) => Key::F2,
+",
+    ),
+    edit(TRANSLATE, "match s.chars().next()? {", "match s.chars().next()?.to_ascii_lowercase() {"),
     edit(
         WINDOW,
         "fn is_cut_command(",

@@ -3,8 +3,8 @@
 //! The corrections keep the wrapper's VST3 from crashing its host and from leaking file descriptors, make sure that a closed
 //! window is gone and one that is shown late is drawn, give the window the host's scale, pass on dropped files and three more keys,
 //! let the window open the host's menu of a parameter, and let a plugin with many outputs play on those that a host has buffers
-//! for. On Windows they keep a click from ending the host, and pass on the keys that nobody types. `plugin/UPSTREAM.md` describes
-//! each fault as in a bug report.
+//! for. On Windows they keep a click from ending the host, and pass on the keys that nobody types. And the compiler warns of
+//! nothing. `plugin/UPSTREAM.md` describes each fault as in a bug report.
 
 mod baseview;
 mod calls;
@@ -15,6 +15,7 @@ mod menu;
 mod ports;
 mod run_loop;
 mod size;
+mod state;
 mod window;
 mod worker;
 
@@ -40,7 +41,16 @@ const PACKAGES: [Package; 4] = [
         name: "nice-plug",
         version: "0.4.2",
         source: "391d811e2293b24ebd2b8fa589194d71b32ae003415a61e5ba6222c7abcb7961",
-        edits: &[worker::EDITS, window::EDITS, run_loop::EDITS, calls::EDITS, menu::EDITS, ports::EDITS, size::EDITS],
+        edits: &[
+            worker::EDITS,
+            window::EDITS,
+            run_loop::EDITS,
+            calls::EDITS,
+            menu::EDITS,
+            ports::EDITS,
+            size::EDITS,
+            state::EDITS,
+        ],
     },
     Package {
         name: "nice-plug-core",

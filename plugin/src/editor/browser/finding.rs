@@ -18,33 +18,56 @@ pub(super) struct Finding {
 }
 
 /// What was found.
+#[derive(Default)]
 pub(super) struct Found {
     pub(super) sounds: Vec<Arc<Listed>>,
-    /// What is said above them; may be empty.
-    pub(super) says: String,
+    /// What is said above the sounds from a place on.
+    pub(super) headings: Vec<(usize, String)>,
+}
+
+impl Found {
+    /// These sounds after the others, below what is said of them, which may be nothing.
+    fn with(mut self, says: &str, sounds: Vec<Arc<Listed>>) -> Self {
+        if !says.is_empty() {
+            self.headings.push((self.sounds.len(), says.to_owned()));
+        }
+        self.sounds.extend(sounds);
+        self
+    }
 }
 
 impl Finding {
-    /// The sounds; where there are none, those from elsewhere that come nearest.
+    /// The sounds, and those that the words find elsewhere; where there are none, those that come nearest.
     pub(super) fn find(&self, sounds: &Sounds) -> Found {
         let of = |category| {
             let mut found = sounds.find(category, &self.words, self.likeness.places());
             self.tags.retain(&mut found);
             found
         };
-        let found = of(self.category);
-        if !found.is_empty() {
-            return Found { sounds: found, says: String::new() };
+        let (found, name, words) = (of(self.category), self.category.name(), self.words.trim().to_lowercase());
+        if !found.is_empty() && (words.is_empty() || self.category == Category::All) {
+            return Found::default().with("", found);
         }
-        if self.words.trim().is_empty() && self.tags.are_empty() {
-            return Found { sounds: found, says: self.category.invitation().to_owned() };
+        if words.is_empty() && self.tags.are_empty() {
+            return Found::default().with(self.category.invitation(), found);
         }
-        let found = of(Category::All);
-        if !found.is_empty() {
-            return Found { sounds: found, says: format!("None in {}. Elsewhere:", self.category.name()) };
+        let mut elsewhere = of(Category::All);
+        if elsewhere.is_empty() {
+            let (near, says) = sounds.nearest(&self.words, |_| true);
+            return Found::default().with(says, near);
         }
-        let (near, says) = sounds.nearest(&self.words, |_| true);
-        Found { sounds: near, says: says.to_owned() }
+        if found.is_empty() {
+            return Found::default().with(&format!("None in {name}. Elsewhere:"), elsewhere);
+        }
+        elsewhere.retain(|sound| !found.iter().any(|own| Arc::ptr_eq(own, sound)));
+        let is_named = |sound: &Arc<Listed>| sound.name().to_lowercase() == words;
+        // Enter takes the first: a name is meant, although the family of another search was left chosen.
+        let comes_first = |sound: &Arc<Listed>| is_named(sound) && !found.iter().any(is_named);
+        let (named, others): (Vec<_>, Vec<_>) = elsewhere.into_iter().partition(comes_first);
+        let own = if named.is_empty() { String::new() } else { format!("In {name}:") };
+        let parts = [(format!("Named so, but not in {name}:"), named), (own, found), ("Elsewhere:".to_owned(), others)];
+        let parts = parts.into_iter().filter(|(_, part)| !part.is_empty());
+        parts.fold(Found::default(), |all, (says, part)| all.with(&says, part))
     }
 
     /// Shows all of a category: words and tags of another search would hide most of it.
@@ -56,5 +79,39 @@ impl Finding {
     /// What is looked for, to be compared with it later.
     pub(super) fn question(&self) -> (Category, String, Tags) {
         (self.category, self.words.clone(), self.tags.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::internals::library::Library;
+    use sprung::preset::{Family, Playable, Preset};
+
+    #[test]
+    fn words_find_sounds_outside_the_family_too_and_first_those_that_they_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let library = Library::at(folder.path());
+        let (name, comment) = ("My Glass Room".to_owned(), "A marimba.".to_owned());
+        let own = Preset { name, comment, ..Preset::find("Marimba").unwrap().clone() };
+        library.save(&Playable::Preset(own), false).unwrap();
+        let sounds = Sounds::read(Some(library));
+        let find = |category, words: &str| {
+            let found = Finding { category, words: words.to_owned(), ..Finding::default() }.find(&sounds);
+            let names: Vec<String> = found.sounds.iter().map(|sound| sound.name().to_owned()).collect();
+            (names, found.headings)
+        };
+        let (names, headings) = find(Category::Own, "marimba");
+        let place = names.iter().position(|name| name == "My Glass Room").unwrap();
+        assert!(names[0] == "Marimba" && names[..place].iter().all(|name| name.contains("Marimba")), "{names:?}");
+        let says = [(0, "Named so, but not in Your own:".to_owned()), (place, "In Your own:".to_owned())];
+        assert_eq!(headings[..2], says);
+        let mut all = find(Category::All, "marimba");
+        assert_eq!((names.len(), all.1.len()), (all.0.len(), 0), "none is lost, and none is twice");
+        all = find(Category::Own, "glass");
+        assert_eq!((all.0[0].as_str(), &all.1[..]), ("My Glass Room", &[(1, "Elsewhere:".to_owned())][..]));
+        assert_eq!(find(Category::Own, " "), (vec!["My Glass Room".to_owned()], vec![]));
+        let says = [(0, "None in Mallet. Elsewhere:".to_owned())];
+        assert_eq!(find(Category::Family(Family::Mallet), "church bell").1, says);
     }
 }

@@ -2,6 +2,7 @@
 
 use super::list::row;
 use egui::{Event, Id, Key, Modifiers, Popup, Ui};
+use std::ops::Range;
 
 /// What is asked for by a key.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,14 +29,15 @@ pub(super) enum Way {
 }
 
 impl Way {
-    /// The place of the sound to which it leads, among so many on shelves with `columns` each, of which `seen` are seen at once.
-    pub(super) fn from(self, place: Option<usize>, count: usize, [columns, seen]: [usize; 2]) -> Option<usize> {
-        let last = count.checked_sub(1)?;
+    /// The place of the sound to which it leads, among those on these shelves, of which `seen` are seen at once.
+    pub(super) fn from(self, place: Option<usize>, shelves: &[Range<usize>], seen: usize) -> Option<usize> {
+        let last = shelves.last()?.end - 1;
         let Some(place) = place else { return Some(if self == Self::Last { last } else { 0 }) };
-        let by_shelves = |shelves: isize| {
-            // To the last sound, where the last shelf is not full; not beyond the first shelf and the last.
-            let rows = (place / columns).saturating_add_signed(shelves).min(last / columns);
-            (rows * columns + place % columns).min(last)
+        let by_shelves = |by: isize| {
+            // To its last sound, where a shelf is not full; not beyond the first shelf and the last.
+            let here = shelves.partition_point(|shelf| shelf.end <= place);
+            let there = &shelves[here.saturating_add_signed(by).min(shelves.len() - 1)];
+            (there.start + place - shelves[here].start).min(there.end - 1)
         };
         Some(match self {
             Self::Beside(by) => place.saturating_add_signed(by).min(last),
@@ -124,6 +126,7 @@ mod tests {
     #[test]
     fn ways_stay_on_the_shelves() {
         // Three full shelves of four, and one of two.
+        let shelves = [0..4, 4..8, 8..12, 12..14];
         for (way, from, to) in [
             (Way::Beside(1), 3, 4),
             (Way::Beside(-1), 0, 0),
@@ -139,10 +142,15 @@ mod tests {
             (Way::First, 9, 0),
             (Way::Last, 9, 13),
         ] {
-            assert_eq!(way.from(Some(from), 14, [4, 2]), Some(to), "{way:?} from {from}");
+            assert_eq!(way.from(Some(from), &shelves, 2), Some(to), "{way:?} from {from}");
         }
-        assert_eq!(Way::Shelves(1).from(None, 14, [4, 2]), Some(0), "from a sound that is not listed");
-        assert_eq!(Way::Last.from(None, 14, [4, 2]), Some(13));
-        assert_eq!(Way::First.from(None, 0, [4, 2]), None);
+        assert_eq!(Way::Shelves(1).from(None, &shelves, 2), Some(0), "from a sound that is not listed");
+        assert_eq!(Way::Last.from(None, &shelves, 2), Some(13));
+        assert_eq!(Way::First.from(None, &[], 2), None);
+        // A shelf is not full above a heading.
+        for (way, from, to) in [(1, 3, 4), (1, 4, 5), (1, 1, 4), (1, 9, 9), (-1, 7, 4), (-1, 4, 0)] {
+            let found = Way::Shelves(way).from(Some(from), &[0..4, 4..5, 5..9, 9..10], 2);
+            assert_eq!(found, Some(to), "{way} from {from}");
+        }
     }
 }

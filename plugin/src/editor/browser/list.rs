@@ -5,8 +5,9 @@ use crate::editor::body::face;
 use crate::editor::theme::{Palette, RADIUS, SMALL, TEXT};
 use crate::editor::widgets::text::line;
 use crate::editor::widgets::{list, outline, star};
-use egui::{Align2, EventFilter, Id, Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
+use egui::{Align2, EventFilter, Id, Rect, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo, vec2};
 use sprung::internals::library::Listed;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Height of a line of text.
@@ -26,8 +27,8 @@ pub(super) struct List<'a> {
     pub(super) present: &'a str,
     /// The place of the sound that was chosen by a key: the list scrolls to it.
     pub(super) chosen: Option<usize>,
-    /// What is said above them; may be empty.
-    pub(super) says: &'a str,
+    /// What is said above those from a place on.
+    pub(super) headings: &'a [(usize, String)],
 }
 
 /// The places of what was clicked.
@@ -40,13 +41,9 @@ pub(super) struct Clicked {
 impl List<'_> {
     /// Shows the list.
     pub(super) fn show(&self, ui: &mut Ui, rect: Rect, sounds: &Sounds, palette: &Palette) -> Clicked {
-        let Self { found, present, chosen, says } = *self;
+        let Self { found, present, .. } = *self;
         let mut clicked = Clicked::default();
-        let told = if says.is_empty() { 0.0 } else { ROW };
-        line(ui.painter(), rect.with_max_y(rect.top() + ROW), Align2::LEFT_CENTER, says, TEXT, palette.muted);
-        let below = rect.with_min_y(rect.top() + told);
-        let tile = tile(rect);
-        list::show(ui, below, "sounds", tile, (found.len(), chosen), |ui, place, cell| {
+        self.show_shelves(ui, rect, palette, |ui, place, cell| {
             let sound = &found[place];
             let response = ui.interact(cell.shrink(2.0), row(place), Sense::click());
             let is_on = sound.name() == present;
@@ -83,6 +80,38 @@ impl List<'_> {
         });
         clicked
     }
+
+    /// Shows the cells of the sounds on their shelves, and the headings above these.
+    fn show_shelves(&self, ui: &mut Ui, rect: Rect, palette: &Palette, mut cell: impl FnMut(&Ui, usize, Rect)) {
+        let [width, height] = tile(rect);
+        let (columns, count) = (list::columns(rect, width), self.found.len());
+        let shelves = shelves(rect, count, self.headings);
+        let mut inner = ui.new_child(UiBuilder::new().id_salt("sounds").max_rect(rect));
+        ScrollArea::vertical().id_salt("sounds").auto_shrink(false).show(&mut inner, |ui| {
+            let whole = shelves.len() as f32 * height + self.headings.len() as f32 * ROW;
+            let size = vec2(ui.available_width() / columns as f32, height);
+            let (area, _) = ui.allocate_exact_size(vec2(ui.available_width(), whole), Sense::hover());
+            let mut corner = area.min;
+            // The last one is empty: where nothing is found, that is said.
+            for shelf in shelves.into_iter().chain(std::iter::once(count..count)) {
+                for (_, says) in self.headings.iter().filter(|(place, _)| *place == shelf.start) {
+                    let at = Rect::from_min_size(corner, vec2(area.width(), ROW));
+                    line(ui.painter(), at, Align2::LEFT_CENTER, says, TEXT, palette.muted);
+                    corner.y += ROW;
+                }
+                for (column, place) in shelf.enumerate() {
+                    let at = Rect::from_min_size(corner + vec2(column as f32 * size.x, 0.0), size);
+                    if self.chosen == Some(place) {
+                        ui.scroll_to_rect(at.expand(height), None);
+                    }
+                    if list::is_near(ui, at) {
+                        cell(ui, place, at);
+                    }
+                }
+                corner.y += height;
+            }
+        });
+    }
 }
 
 /// Width and height of a sound on its shelf, in a list of this size.
@@ -90,10 +119,22 @@ fn tile(rect: Rect) -> [f32; 2] {
     TILES[usize::from(rect.height() < LOW)]
 }
 
-/// How many sounds stand on a shelf of a list of this size, and how many shelves are seen at once.
-pub(super) fn shelves(rect: Rect) -> [usize; 2] {
-    let [width, height] = tile(rect);
-    [list::columns(rect, width), ((rect.height() / height) as usize).max(1)]
+/// The places of the sounds on each shelf of a list of this size: those below a heading begin one of their own.
+pub(super) fn shelves(rect: Rect, count: usize, headings: &[(usize, String)]) -> Vec<Range<usize>> {
+    let columns = list::columns(rect, tile(rect)[0]);
+    let (mut shelves, mut start) = (Vec::new(), 0);
+    for end in headings.iter().map(|(place, _)| *place).chain([count]) {
+        while start < end {
+            shelves.push(start..(start + columns).min(end));
+            start = (start + columns).min(end);
+        }
+    }
+    shelves
+}
+
+/// How many shelves of a list of this size are seen at once.
+pub(super) fn seen(rect: Rect) -> usize {
+    ((rect.height() / tile(rect)[1]) as usize).max(1)
 }
 
 /// The widget of a sound in the list.

@@ -24,7 +24,7 @@ use egui::{Rect, Stroke, Ui, pos2};
 use fields::search_field;
 use finding::{Finding, Found};
 use keys::Command;
-use list::{List, row, shelves};
+use list::{List, row, seen, shelves};
 use portrait::Portrait;
 use sounds::{Category, Sounds};
 use sprung::internals::library::Library;
@@ -153,12 +153,17 @@ impl Browser {
         let (search, rest) = list.split_top_bottom_at_y(list.top() + 28.0);
         let (tags, rows) = rest.split_top_bottom_at_y(rest.top() + tags::height(list.height() < LOW));
         let import = search.with_max_y(search.top() + 22.0).with_min_x(search.right() - IMPORT);
-        let Found { sounds: found, says } = self.finding.find(&sounds);
+        let Found { sounds: found, headings } = self.finding.find(&sounds);
         // Once a sound has been tried for its words, the search has no use for keys that move in them.
         let words = if self.tried.as_ref() == Some(&self.finding.words) { "" } else { &self.finding.words };
         let command = keys::asked(ui, search_field(), words, found.len());
-        let count = if says.is_empty() { self.finding.category.counted(found.len()) } else { String::new() };
+        let count = if headings.is_empty() { self.finding.category.counted(found.len()) } else { String::new() };
         let clicks_elsewhere = self.finding.show_search(ui, search.with_max_x(import.left() - 4.0), &count, palette);
+        let narrows = |at| categories.contains(at) || tags.contains(at);
+        if clicks_elsewhere && ui.input(|input| input.pointer.interact_pos()).is_some_and(narrows) {
+            // What is typed next would be played otherwise.
+            ui.memory_mut(|memory| memory.request_focus(search_field()));
+        }
         let response = button(ui, import, "Import", "Import files", Look::Plain, palette);
         if response.hovered() {
             *controls.hint = Hint::new("Import", "Open sounds, kits, scales, or recordings to make a sound of.");
@@ -172,7 +177,8 @@ impl Browser {
         let (mut chosen, mut is_kept) = (None, false);
         match command {
             Some(Command::Go(way)) => {
-                chosen = way.from(place, found.len(), shelves(rows)).filter(|next| Some(*next) != place);
+                chosen = way.from(place, &shelves(rows, found.len(), &headings), seen(rows));
+                chosen = chosen.filter(|next| Some(*next) != place);
                 if let Some(next) = chosen.filter(|_| focused.is_some()) {
                     ui.memory_mut(|memory| memory.request_focus(row(next)));
                 }
@@ -191,7 +197,7 @@ impl Browser {
             Some(Command::Keep) => is_kept = focused.is_none_or(|focused| Some(focused) == place),
             None => {}
         }
-        let list = List { found: &found, present: &present, chosen, says: &says };
+        let list = List { found: &found, present: &present, chosen, headings: &headings };
         let clicked = list.show(ui, rows, &sounds, palette);
         let mut starred = clicked.star.and_then(|place| found.get(place).cloned());
         // By a key, a sound that is loaded is only played again: a click brings it back as it was.

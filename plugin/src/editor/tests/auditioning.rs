@@ -136,6 +136,34 @@ fn after_a_click_the_keys_are_those_of_the_list_although_words_are_searched_for(
 }
 
 #[test]
+fn a_click_on_a_family_or_a_tag_leaves_the_keys_to_the_search() {
+    let mut stage = stage("Church Bell", SIZE, 1.0, Theme::Dark);
+    stage.host.is_alone.store(true, Relaxed);
+    let mut strikes = strikes(&stage);
+    stage.press_key(Key::Slash);
+    let words = |stage: &Stage| stage.harness.get_by_role_and_label(Role::TextInput, "Search").accesskit_node().value();
+    // The first family is chosen already.
+    for (name, typed, all) in
+        [("Show All", "m", "m"), ("Show Mallet", "glass", "glass"), ("Only glass", " m", "glass m")]
+    {
+        stage.button(name);
+        // A key that would play.
+        stage.harness.key_press(Key::M);
+        stage.type_text(typed);
+        assert_eq!((words(&stage).as_deref(), strikes()), (Some(all), 0), "{name}");
+    }
+    // The arrows walk on to what was found in other families.
+    let names = stage.names();
+    assert!(stage.paints("Elsewhere:") && names.len() > 1);
+    for (key, name) in [(Key::ArrowDown, &names[0]), (Key::ArrowDown, &names[1]), (Key::End, &names[names.len() - 1])] {
+        stage.press_key(key);
+        assert_eq!(&stage.params.name(), name, "{key:?}");
+    }
+    stage.press_key(Key::Escape);
+    assert!(!stage.is_browsing());
+}
+
+#[test]
 fn tried_sounds_are_one_step_which_escape_takes_back() {
     for is_kept in [true, false] {
         let mut stage = stage("Church Bell", SIZE, 1.0, Theme::Dark);

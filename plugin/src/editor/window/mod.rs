@@ -140,7 +140,7 @@ impl Window {
         let (face, steps) = take(&mut *lock(&past.0));
         let (history, versions, loads) = steps
             .filter(|(.., loads)| *loads == params.loads())
-            .unwrap_or_else(|| (History::default(), Versions::default(), params.loads()));
+            .unwrap_or_else(|| (History::of_loaded(&params, library.as_ref()), Versions::default(), params.loads()));
         Self {
             params,
             past,
@@ -450,7 +450,8 @@ impl Window {
     fn follow_loads(&mut self) {
         let loads = self.params.loads();
         if std::mem::replace(&mut self.loads, loads) != loads {
-            (self.history, self.versions) = (History::default(), Versions::default());
+            let history = History::of_loaded(&self.params, self.browser.library());
+            (self.history, self.versions) = (history, Versions::default());
             self.interaction.switched_off.clear();
             (self.interaction.typing, self.interaction.naming) = (None, None);
             self.news = Some(Ok(String::new()));

@@ -83,6 +83,11 @@ const SPEED: &str = "(async (preset) => {
   return {times, ...played, silent: silent.lost};
 })";
 
+/// JavaScript: leaves the list of sounds as a click does, but without opening it: an open list would take the keys.
+const CHOSEN_FROM: &str =
+    "(list => { list.dispatchEvent(new PointerEvent('pointerdown', { bubbles: true })); list.focus(); })
+  (document.querySelector('#preset'))";
+
 /// JavaScript: turns the first macro.
 const TURN: &str = "(input => { input.value = 0.7; input.dispatchEvent(new Event('input')); })
   (document.querySelector('#macros input'))";
@@ -155,10 +160,15 @@ fn sounds(page: &mut Page) -> Result<(), String> {
     };
     page.click("[data-key='60']");
     heard(page, "a key under the mouse")?;
-    for kind in ["keyDown", "keyUp"] {
-        page.call("Input.dispatchKeyEvent", json!({ "type": kind, "key": "e", "code": "KeyE" }));
-    }
+    press(page, "e", "KeyE");
     heard(page, "a key of the computer")?;
+    // A list that a pointer has chosen from keeps the focus, and the next letter would search it.
+    page.value(CHOSEN_FROM);
+    press(page, "m", "KeyM");
+    heard(page, "a key of the computer after a choice from a list")?;
+    if page.value("sprung.state.preset.name") != json!("Church Bell") {
+        return Err("a key that plays has chosen a sound".to_owned());
+    }
     page.click("#body");
     heard(page, "a body that is clicked")?;
     drag(
@@ -166,7 +176,7 @@ fn sounds(page: &mut Page) -> Result<(), String> {
         "(r => [r.x + r.width / 2, r.y + r.height / 2, 0.3 * r.width, 0])(document.querySelector('#plane').getBoundingClientRect())",
     );
     heard(page, "a mass that is pulled")?;
-    until(page, "sprung.state.take.filter((event) => event.message).length === 8")?;
+    until(page, "sprung.state.take.filter((event) => event.message).length === 10")?;
     midi::plays(page, heard)?;
     page.value(TURN);
     until(page, "sprung.state.take.at(-1)?.position === 0.7")?;
@@ -221,6 +231,17 @@ fn sounds(page: &mut Page) -> Result<(), String> {
     match peak.as_f64() {
         Some(peak) if peak > 0.01 && peak < 1.0 => Ok(()),
         _ => Err(format!("the take’s peak is {peak}")),
+    }
+}
+
+/// Presses a key of the computer that types a letter, and holds it until it has repeated.
+fn press(page: &mut Page, letter: &str, code: &str) {
+    for (kind, is_repeated) in [("keyDown", false), ("keyDown", true), ("keyUp", false)] {
+        let mut event = json!({ "type": kind, "key": letter, "code": code, "autoRepeat": is_repeated });
+        if kind == "keyDown" {
+            event["text"] = json!(letter);
+        }
+        page.call("Input.dispatchKeyEvent", event);
     }
 }
 

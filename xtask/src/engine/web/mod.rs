@@ -11,15 +11,12 @@ use crate::shell::root;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The port of `--serve`.
-const PORT: u16 = 8017;
-
 /// What to do beside building the page.
 pub(crate) struct Options<'a> {
     /// The compiler for WebAssembly, in place of the present toolchain's.
     pub(crate) rustc: Option<&'a Path>,
-    /// Serve the page until the program is ended.
-    pub(crate) serve: bool,
+    /// Serve the page at this port until the program is ended.
+    pub(crate) serve: Option<u16>,
     /// Try it in Chromium and measure.
     pub(crate) check: bool,
     /// Take the picture for the README.
@@ -35,8 +32,8 @@ pub(crate) fn run(options: &Options) -> Result<(), String> {
         std::thread::spawn(move || serve::run(&listener, &served));
         check::run(&format!("http://127.0.0.1:{port}/"), options.check, options.picture)?;
     }
-    if options.serve {
-        let (port, listener) = serve::listen(PORT)?;
+    if let Some(port) = options.serve {
+        let (port, listener) = serve::listen(port)?;
         println!("http://127.0.0.1:{port}/ (end with Ctrl-C)");
         serve::run(&listener, &folder);
     }

@@ -1,13 +1,19 @@
 //! Serves the files of a folder to this machine only: browsers load no audio worklet from a file.
 
-use std::io::{BufRead as _, BufReader, Write as _};
+use std::io::{BufRead as _, BufReader, ErrorKind, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::path::Path;
 use std::time::Duration;
 
 /// Listens on this machine alone; port 0 stands for any. Returns the port.
 pub(super) fn listen(port: u16) -> Result<(u16, TcpListener), String> {
-    let listener = TcpListener::bind(("127.0.0.1", port)).map_err(|error| format!("port {port}: {error}"))?;
+    let listener = TcpListener::bind(("127.0.0.1", port)).map_err(|error| match error.kind() {
+        ErrorKind::AddrInUse => format!(
+            "port {port} is taken, perhaps by another `cargo xtask web --serve`: end that, or choose another port with \
+             --port N"
+        ),
+        _ => format!("port {port}: {error}"),
+    })?;
     let port = listener.local_addr().map_err(|error| error.to_string())?.port();
     Ok((port, listener))
 }
@@ -43,12 +49,14 @@ fn answer(mut stream: TcpStream, folder: &Path) -> std::io::Result<()> {
         stream,
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n"
     )?;
-    stream.write_all(&body)
+    // HEAD asks for what GET would say of the file, without the file.
+    if request.starts_with("HEAD ") { Ok(()) } else { stream.write_all(&body) }
 }
 
-/// The name of the file that a request line names; `None` if it is not a plain name, such as a path out of the folder.
+/// The name of the file that a request line asks for; `None` if it is not a plain name, such as a path out of the folder.
 fn name(request: &str) -> Option<&str> {
-    let path = request.strip_prefix("GET /")?.split([' ', '?']).next()?;
+    let path = ["GET /", "HEAD /"].iter().find_map(|asked| request.strip_prefix(asked))?;
+    let path = path.split([' ', '?']).next()?;
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "._-".contains(letter);
     match path {
         "" => Some("index.html"),
@@ -77,12 +85,34 @@ mod tests {
         let (port, listener) = listen(0).unwrap();
         std::thread::spawn(move || run(&listener, Path::new("/nowhere")));
         let _silent = TcpStream::connect(("127.0.0.1", port)).unwrap();
-        let mut other = TcpStream::connect(("127.0.0.1", port)).unwrap();
-        other.set_read_timeout(Some(20 * PATIENCE)).unwrap();
-        other.write_all(b"GET /page.js HTTP/1.1\r\n\r\n").unwrap();
-        let mut answer = String::new();
-        other.read_to_string(&mut answer).unwrap();
+        let answer = ask(port, "GET /page.js HTTP/1.1");
         assert!(answer.starts_with("HTTP/1.1 404 Not Found"), "{answer}");
+    }
+
+    #[test]
+    fn head_is_answered_as_get_without_the_file() {
+        let (port, listener) = listen(0).unwrap();
+        std::thread::spawn(move || run(&listener, Path::new(env!("CARGO_MANIFEST_DIR"))));
+        let [head, whole] = ["HEAD", "GET"].map(|method| ask(port, &format!("{method} /Cargo.toml HTTP/1.1")));
+        assert!(head.starts_with("HTTP/1.1 200 OK") && head.ends_with("\r\n\r\n"), "{head}");
+        assert!(whole.strip_prefix(&head).is_some_and(|file| file.starts_with("[package]")), "{whole}");
+    }
+
+    #[test]
+    fn a_port_that_is_taken_is_named_with_what_to_do() {
+        let (port, _listener) = listen(0).unwrap();
+        let message = listen(port).unwrap_err();
+        assert!(message.contains(&format!("port {port} is taken")) && message.contains("--port"), "{message}");
+    }
+
+    /// The answer to a request.
+    fn ask(port: u16, request: &str) -> String {
+        let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
+        stream.set_read_timeout(Some(20 * PATIENCE)).unwrap();
+        write!(stream, "{request}\r\n\r\n").unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        answer
     }
 
     #[test]
@@ -90,6 +120,7 @@ mod tests {
         for (request, expected) in [
             ("GET / HTTP/1.1", Some("index.html")),
             ("GET /page.js?1 HTTP/1.1", Some("page.js")),
+            ("HEAD /page.js HTTP/1.1", Some("page.js")),
             ("GET /../Cargo.toml HTTP/1.1", None),
             ("GET /.. HTTP/1.1", None),
             ("POST /page.js HTTP/1.1", None),
