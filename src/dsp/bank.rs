@@ -2,6 +2,7 @@
 
 use super::exciter::{Drive, Player};
 use super::mode_bank::exchange::{BANDS, Band, Exchange};
+use super::mode_bank::played::Part;
 use super::mode_bank::{ExcitationRows, MAX_MODES, ModeRows};
 use super::{ClassicBank, ModeBank};
 
@@ -106,9 +107,9 @@ impl Bank {
         if let Self::Exact(bank) = self { bank.set_touched(m, push, weight) } else { [0.0; 2] }
     }
 
-    /// See [`ModeBank::given`].
-    pub(crate) fn given(&mut self) -> f32 {
-        if let Self::Exact(bank) = self { bank.given() } else { 0.0 }
+    /// See [`ModeBank::part`]; none with the original formulas.
+    pub(super) fn part(&mut self, frames: usize) -> Option<Part<'_>> {
+        if let Self::Exact(bank) = self { Some(bank.part(frames).0) } else { None }
     }
 
     /// See [`ModeBank::nudge`].
@@ -148,7 +149,7 @@ impl Bank {
         either!(self, bank => bank.render(drive, frames))
     }
 
-    /// See [`ModeBank::render_played`]. With the original formulas, the player is ignored.
+    /// See [`ModeBank::render_played`]. With the original formulas, the player moves nothing, and a hammer passes.
     pub(crate) fn render_played(
         &mut self,
         drive: Option<&Drive>,
@@ -157,7 +158,12 @@ impl Bank {
     ) -> [&[f32]; 2] {
         match self {
             Self::Exact(bank) => bank.render_played(drive, player, frames),
-            Self::Classic(bank) => bank.render(drive, frames),
+            Self::Classic(bank) => {
+                if let Some(Player::Hammer(hammer)) = player {
+                    (0..frames).for_each(|_| _ = hammer.force_on(0.0));
+                }
+                bank.render(drive, frames)
+            }
         }
     }
 

@@ -7,6 +7,7 @@ pub(crate) use cascade::Climb;
 use super::CONTROL_FRAMES;
 use super::bank::{Bank, Recurrence};
 use super::exciter::{Drive, Player};
+use super::mode_bank::played::play;
 use super::mode_bank::tail::Energies;
 use super::mode_bank::{ExcitationRows, MAX_MODES, ModeRows};
 
@@ -228,7 +229,9 @@ impl Cells {
     pub(crate) fn render(&mut self, drive: Option<&Drive>, player: Option<Player>, frames: usize) -> [&[f32]; 2] {
         let frames = frames.min(CONTROL_FRAMES);
         let mut player = player;
-        if self.cells[1].is_some()
+        let is_exact = matches!(self.cells[0].as_deref(), Some(Cell { bank: Bank::Exact(_), .. }));
+        if is_exact
+            && self.cells[1].is_some()
             && let Some(player @ (Player::Hammer(_) | Player::Forces(_))) = &mut player
         {
             self.render_hammered(drive.unwrap_or(&Drive::NONE), player, frames);
@@ -251,27 +254,16 @@ impl Cells {
         sum.each_ref().map(|side| &side[..frames])
     }
 
-    /// Renders all cells frame by frame, since a hammer feels all of them. Returns the player's forces.
+    /// Renders all cells together, since a hammer feels all of them. Returns the player's forces.
     pub(crate) fn render_hammered(
         &mut self,
         drive: &Drive,
         player: &mut Player,
         frames: usize,
     ) -> [f32; CONTROL_FRAMES] {
-        let (mut now, mut forces, mut force) = (Drive::NONE, [0.0; CONTROL_FRAMES], [0.0; CONTROL_FRAMES]);
-        for (i, kept) in forces.iter_mut().enumerate().take(frames) {
-            let given = self.iter_mut().map(|cell| cell.bank.given()).sum();
-            *kept = player.force_on(i, given);
-            force[0] = *kept;
-            (now.push[0], now.pull[0], now.noise[0]) = (drive.push[i], drive.pull[i], drive.noise[i]);
-            let mut heard = [0.0; 2];
-            for cell in self.iter_mut() {
-                let [left, right] = cell.bank.render_played(Some(&now), Some(Player::Forces(&force)), 1);
-                heard = [heard[0] + left[0], heard[1] + right[0]];
-            }
-            self.sum.iter_mut().zip(heard).for_each(|(sum, heard)| sum[i] = heard);
-        }
-        forces
+        let Self { cells, sum, .. } = self;
+        let mut parts = cells.each_mut().map(|cell| cell.as_deref_mut()?.bank.part(frames));
+        play(&mut parts, frames, drive, player, sum)
     }
 
     /// Like [`super::ModeBank::mass`], for the modes of the first cell: at most [`MAX_MODES`].

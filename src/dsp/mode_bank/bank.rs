@@ -1,6 +1,6 @@
 //! The public interface of the bank: load modes, excite them, change their pitch and decay, render.
 
-use super::played::{Given, Played};
+use super::played::{Part, play};
 use super::ring::Ring;
 use super::rows::{Form, Modes, Moving, Output, Row, State, Wide};
 use super::step::Step;
@@ -248,10 +248,11 @@ impl ModeBank {
     }
 
     /// What the modes give a player now.
+    #[cfg(test)]
     pub(crate) fn given(&mut self) -> f32 {
         self.leave_tables();
-        let Self { instructions, modes, states, current, live, .. } = self;
-        instructions.run(Given { modes, state: &states[*current], live: *live })
+        let x = &self.states[self.current].x;
+        (0..self.len).map(|m| x.0[m] * self.modes.give.0[m]).sum()
     }
 
     /// Changes the T60 of mode `m` to `t60` seconds, at once. Follow with [`ModeBank::sweep_to`].
@@ -414,10 +415,24 @@ impl ModeBank {
         self.instructions.run(Step { form, modes, state, drive, out });
     }
 
-    fn step_played(&mut self, drive: &Drive, player: &mut Player, frames: usize) {
+    /// Prepares the modes for forces: all of them are live.
+    fn leave_rest(&mut self) {
+        self.leave_tables();
+        self.live = self.len;
+        match &mut self.motion {
+            Motion::Line { driven, .. } => *driven = true,
+            still => *still = Motion::Still { ticks: 0 },
+        }
+    }
+
+    /// The bank for the next frames under a player, which count as rendered, and the place for what is heard of it: see [`play`].
+    pub(crate) fn part(&mut self, frames: usize) -> (Part<'_>, &mut Output) {
+        debug_assert!(frames <= self.until_tick);
+        self.leave_rest();
         let form = self.form(true, frames);
-        let (modes, state, out) = (&self.modes, &mut self.states[self.current], &mut self.output);
-        self.instructions.run(Played { form, modes, state, drive, player, out });
+        self.until_tick = self.until_tick.saturating_sub(frames);
+        let Self { instructions, modes, states, current, output, .. } = self;
+        (Part { instructions: *instructions, form, modes, state: &mut states[*current] }, output)
     }
 
     /// Makes the tables at the start of a tick, if they will save time.
@@ -461,20 +476,16 @@ impl ModeBank {
         player: Option<Player>,
         frames: usize,
     ) -> [&[f32]; 2] {
-        debug_assert!(frames <= self.until_tick);
         let frames = frames.min(CONTROL_FRAMES);
-        if drive.is_some() || player.is_some() {
-            let drive = drive.unwrap_or(&Drive::NONE);
-            self.leave_tables();
-            self.live = self.len;
-            match &mut self.motion {
-                Motion::Line { driven, .. } => *driven = true,
-                still => *still = Motion::Still { ticks: 0 },
-            }
-            match player {
-                Some(mut player) => self.step_played(drive, &mut player, frames),
-                None => self.step(drive, true, frames),
-            }
+        if let Some(mut player) = player {
+            let (part, out) = self.part(frames);
+            play(&mut [Some(part)], frames, drive.unwrap_or(&Drive::NONE), &mut player, out);
+            return out.each_ref().map(|side| &side[..frames]);
+        }
+        debug_assert!(frames <= self.until_tick);
+        if let Some(drive) = drive {
+            self.leave_rest();
+            self.step(drive, true, frames);
         } else {
             self.make_tables();
             match self.motion {

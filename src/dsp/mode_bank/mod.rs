@@ -68,7 +68,7 @@
 mod bank;
 pub(super) mod exchange;
 #[allow(clippy::needless_range_loop, reason = "as in `ring`")]
-mod played;
+pub(super) mod played;
 #[allow(clippy::needless_range_loop, reason = "kernels index several arrays in step")]
 mod ring;
 mod rows;

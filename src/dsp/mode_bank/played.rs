@@ -4,8 +4,8 @@
 //! *take*, and the sum of *give* times `x` is what the player feels: the speed of the point under a bow, the pressure behind a
 //! valve. What is heard of a bow and a breath is `x` in the middle of two pushes, where a constant force, as of a bow that only
 //! pulls, has hardly moved it; what a hammer has pushed by the end of a frame is heard then. One pass over the bank turns all modes and adds up what they
-//! give for the next frame, first by lane (`m mod 16`) and then by halves of the lanes, as in `step`. Only the first bank of a
-//! body is played: with several, each would have to wait for the sums of the others in every frame.
+//! give for the next frame, first by lane (`m mod 16`) and then by halves of the lanes, as in `step`. Bow and breath play only the first
+//! bank of a body; a hammer feels all of them in every frame.
 //!
 //! **Bow.** Take and give are the same weights, whose squares add up to 1. So a force `F` changes the sum of the squared
 //! amplitudes by `2 F (v + F/2)`, where `v` is the speed of the point. Friction brings the point towards the bow's speed and
@@ -26,55 +26,66 @@ use super::rows::{Form, Modes, Output, State};
 use super::tuning::stair;
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::exciter::{Drive, Player};
-use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::{LANES, Partial, Vector};
+use crate::dsp::simd::{Instructions, Kernel};
 
-/// Steps the live modes through some frames, under a player and any other forces.
-pub(super) struct Played<'a, 'b> {
+/// A bank for some frames under a player.
+pub(crate) struct Part<'a> {
+    pub(super) instructions: Instructions,
     pub(super) form: Form,
     pub(super) modes: &'a Modes,
     pub(super) state: &'a mut State,
-    pub(super) drive: &'a Drive,
-    pub(super) player: &'a mut Player<'b>,
-    pub(super) out: &'a mut Output,
+}
+
+/// Steps the banks of a body through some frames, under a player who feels all of them and any other forces, and writes the sum of what is
+/// heard. Returns the player's forces.
+pub(crate) fn play(
+    parts: &mut [Option<Part>],
+    frames: usize,
+    drive: &Drive,
+    player: &mut Player,
+    out: &mut Output,
+) -> [f32; CONTROL_FRAMES] {
+    let instructions = parts.iter().flatten().next().map_or_else(Instructions::current, |part| part.instructions);
+    instructions.run(Played { parts, frames: frames.min(CONTROL_FRAMES), drive, player, out })
+}
+
+/// See [`play`].
+struct Played<'a, 'b, 'c> {
+    parts: &'a mut [Option<Part<'c>>],
+    frames: usize,
+    drive: &'a Drive,
+    player: &'a mut Player<'b>,
+    out: &'a mut Output,
 }
 
 /// Sums of a frame: left output, right output, and what the modes give the player.
 type Sums = [f32; 3];
 
-impl Kernel for Played<'_, '_> {
-    type Output = ();
+impl Kernel for Played<'_, '_, '_> {
+    type Output = [f32; CONTROL_FRAMES];
 
     #[inline(always)]
-    fn run<V: Vector>(self, proof: V::Proof) {
-        let Self { form, modes, state, drive, player, out } = self;
-        let (live, frames) = (form.live.min(MAX_MODES), form.frames.min(CONTROL_FRAMES));
+    fn run<V: Vector>(self, proof: V::Proof) -> Self::Output {
+        let Self { parts, frames, drive, player, out } = self;
         let ahead = player.heard_ahead();
-        let mut motion = given::<V>(proof, modes, state, live);
-        for i in 0..frames {
-            let (middle, _) = stair(form.passed + i, form.line.max(1));
-            let force = player.force_on(i, motion);
-            let forces = [force, ahead * force, drive.push[i], drive.pull[i], drive.noise[i]];
-            let lines = [middle, (form.passed + i + 1) as f32];
-            let [left, right, after] = turn::<V>(proof, modes, state, live, lines, forces, form.turned_noise);
-            (out[0][i], out[1][i], motion) = (left, right, after);
+        let mut forces = [0.0; CONTROL_FRAMES];
+        let mut motion = 0.0;
+        for Part { form, modes, state, .. } in parts.iter().flatten() {
+            motion += given::<V>(proof, modes, state, form.live.min(MAX_MODES));
         }
-    }
-}
-
-/// What the modes give the player, outside of [`Played`].
-pub(super) struct Given<'a> {
-    pub(super) modes: &'a Modes,
-    pub(super) state: &'a State,
-    pub(super) live: usize,
-}
-
-impl Kernel for Given<'_> {
-    type Output = f32;
-
-    #[inline(always)]
-    fn run<V: Vector>(self, proof: V::Proof) -> f32 {
-        given::<V>(proof, self.modes, self.state, self.live.min(MAX_MODES))
+        for i in 0..frames {
+            let force = player.force_on(i, motion);
+            forces[i] = force;
+            let all = [force, ahead * force, drive.push[i], drive.pull[i], drive.noise[i]];
+            let mut sums = [0.0; 3];
+            for Part { form, modes, state, .. } in parts.iter_mut().flatten() {
+                let own = turn::<V>(proof, form, modes, state, i, all);
+                sums = [sums[0] + own[0], sums[1] + own[1], sums[2] + own[2]];
+            }
+            (out[0][i], out[1][i], motion) = (sums[0], sums[1], sums[2]);
+        }
+        forces
     }
 }
 
@@ -94,21 +105,24 @@ fn given<V: Vector>(proof: V::Proof, modes: &Modes, state: &State, live: usize) 
     sum[0]
 }
 
-/// Applies the forces (player, what of it is heard ahead, push, pull, noise) of a frame, and turns all modes. `lines` has the positions on the ramps of
-/// coefficients and gains. `turned_noise` says that noise acts on both coordinates.
+/// Applies the forces (player, what of it is heard ahead, push, pull, noise) of a frame, and turns all modes.
 #[inline(always)]
 fn turn<V: Vector>(
     proof: V::Proof,
+    form: &Form,
     modes: &Modes,
     state: &mut State,
-    live: usize,
-    lines: [f32; 2],
+    frame: usize,
     forces: [f32; 5],
-    turned_noise: bool,
 ) -> Sums {
+    let (live, passed) = (form.live.min(MAX_MODES), form.passed + frame);
+    let (middle, _) = stair(passed, form.line.max(1));
+    let (middle, passed) = (V::splat(proof, middle), V::splat(proof, (passed + 1) as f32));
     let mut totals = [Partial([0.0; LANES]); 3];
-    let [played, ahead, push, pull, noise] = [0, 1, 2, 3, 4].map(|force| V::splat(proof, forces[force]));
-    let (middle, passed) = (V::splat(proof, lines[0]), V::splat(proof, lines[1]));
+    // One by one: a closure would be compiled without the level's instructions.
+    let [played, ahead, push, pull, noise] = forces;
+    let (played, ahead, push) = (V::splat(proof, played), V::splat(proof, ahead), V::splat(proof, push));
+    let (pull, noise) = (V::splat(proof, pull), V::splat(proof, noise));
     let mut at = 0;
     while at < live {
         let (take, give): (V, V) = (modes.take.at(proof, at), modes.give.at(proof, at));
@@ -118,7 +132,7 @@ fn turn<V: Vector>(
         y = push.mul_add(modes.push_y.at(proof, at), pull.mul_add(modes.pull_y.at(proof, at), y));
         y = noise.mul_add(modes.noise.at(proof, at), y);
         y = played.mul_add(modes.take_y.at(proof, at), y);
-        if turned_noise {
+        if form.turned_noise {
             x = noise.mul_add(modes.noise_x.at(proof, at), x);
         }
         let alpha: V = middle.mul_add(modes.alpha_step.at(proof, at), modes.alpha.at(proof, at));
