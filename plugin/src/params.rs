@@ -49,8 +49,9 @@ struct Locked {
     loaded: Arc<Loaded>,
     /// All sounds that the audio thread may still refer to, including the last one.
     may_sound: Collector<Loaded>,
-    /// How many states the host has loaded.
+    /// How many states the host has loaded, and whether the last one is a sound from a file.
     loads: u64,
+    is_from_file: bool,
     /// The names of a kit's pads, by key.
     note_names: NoteNames,
 }
@@ -100,8 +101,17 @@ impl SprungParams {
         let may_sound = Collector::default();
         may_sound.keep(&loaded);
         let complaints = Arc::new([]);
-        let locked =
-            Locked { playable, pad, view, complaints, loaded: loaded.clone(), may_sound, loads: 0, note_names };
+        let locked = Locked {
+            playable,
+            pad,
+            view,
+            complaints,
+            loaded: loaded.clone(),
+            may_sound,
+            loads: 0,
+            is_from_file: false,
+            note_names,
+        };
         Self {
             knobs,
             slot: Slot::new(loaded),
@@ -228,6 +238,16 @@ impl SprungParams {
         self.locked().loads
     }
 
+    /// Whether the state that the host loaded last is a sound from a file. Not for the audio thread.
+    pub(crate) fn is_from_file(&self) -> bool {
+        self.locked().is_from_file
+    }
+
+    fn note_load(&self, is_from_file: bool) {
+        let mut locked = self.locked();
+        (locked.loads, locked.is_from_file) = (locked.loads + 1, is_from_file);
+    }
+
     /// Loads a sound, its knob positions and the rest at once. Not for the audio thread: it computes the sound, and
     /// frees sounds that are no longer played. Does not notify the host. Returns the loaded sound.
     ///
@@ -246,7 +266,7 @@ impl SprungParams {
     pub(crate) fn load_for_host(&self, playable: Playable) {
         let State { seed, view, .. } = self.state();
         self.load(self.suited(State::new(playable, seed, view)).into());
-        self.locked().loads += 1;
+        self.note_load(true);
         self.link.repaint.request_repaint();
     }
 
@@ -363,7 +383,7 @@ unsafe impl Params for SprungParams {
             let is_as_played = fields.contains_key(state::EFFECT_FIELD);
             let state = if is_as_played { read.state } else { self.suited(read.state) };
             self.load(Read { state, ..read });
-            self.locked().loads += 1;
+            self.note_load(false);
         }
     }
 }

@@ -134,31 +134,34 @@ impl LogMel {
         self.columns.iter().flatten().copied().fold(SILENCE_DB, f64::max)
     }
 
-    /// Mean difference from another sound in dB, as [`LogMel::outside`] has it.
+    /// Mean absolute difference from another sound in dB: see [`mean`].
     pub(crate) fn distance(&self, other: &LogMel) -> f64 {
-        self.outside([other, other])
+        mean([self, other], |[a, b]| (a - b).abs())
     }
 
-    /// How far this sound lies outside two others in dB: the mean over all bands and windows in which at least one sound is
-    /// within [`SPAN_DB`] of the loudest band of all. Lower levels are raised to the lower end of that range. 0 if all are
-    /// silent.
+    /// How far this sound lies outside two others in dB: see [`mean`]. Where it is between them, that is 0.
     pub(crate) fn outside(&self, others: [&LogMel; 2]) -> f64 {
-        let sounds = [self, others[0], others[1]];
-        let floor = sounds.iter().map(|sound| sound.loudest()).fold(SILENCE_DB, f64::max) - SPAN_DB;
-        let silence = [SILENCE_DB; BANDS];
-        let (mut sum, mut count) = (0.0, 0);
-        for n in 0..sounds.iter().map(|sound| sound.columns.len()).max().unwrap_or(0) {
-            let columns = sounds.map(|sound| sound.columns.get(n).unwrap_or(&silence));
-            for levels in (0..BANDS).map(|band| columns.map(|column| column[band])) {
-                if levels.iter().any(|level| *level > floor) {
-                    let [own, one, other] = levels.map(|level| level.max(floor));
-                    sum += (one.min(other) - own).max(own - one.max(other)).max(0.0);
-                    count += 1;
-                }
+        mean([self, others[0], others[1]], |[own, a, b]| (a.min(b) - own).max(own - a.max(b)).max(0.0))
+    }
+}
+
+/// Mean of what is measured of the levels of sounds, over all bands and windows in which at least one sound is within [`SPAN_DB`] of the
+/// loudest band of all. Lower levels are raised to the lower end of that range. 0 if all are silent.
+fn mean<const N: usize>(sounds: [&LogMel; N], measure: impl Fn([f64; N]) -> f64) -> f64 {
+    let floor = sounds.map(LogMel::loudest).into_iter().fold(SILENCE_DB, f64::max) - SPAN_DB;
+    let silence = [SILENCE_DB; BANDS];
+    let (mut sum, mut count) = (0.0, 0);
+    for n in 0..sounds.map(|sound| sound.columns.len()).into_iter().max().unwrap_or(0) {
+        let columns = sounds.map(|sound| sound.columns.get(n).unwrap_or(&silence));
+        for band in 0..BANDS {
+            let levels = columns.map(|column| column[band]);
+            if levels.iter().any(|level| *level > floor) {
+                sum += measure(levels.map(|level| level.max(floor)));
+                count += 1;
             }
         }
-        if count == 0 { 0.0 } else { sum / f64::from(count) }
     }
+    if count == 0 { 0.0 } else { sum / f64::from(count) }
 }
 
 /// The onset: the first sample above 1 % of the peak.

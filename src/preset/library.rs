@@ -56,6 +56,12 @@ impl Library {
         self.paths().into_iter().map(|path| Entry { playable: read(&path), path }).collect()
     }
 
+    /// The sounds of this name, each read from its file when it is asked for.
+    pub fn called(&self, name: &str) -> impl Iterator<Item = Playable> {
+        let sounds = self.paths().into_iter().filter_map(|path| read(&path).ok());
+        sounds.filter(move |sound| sound.name().eq_ignore_ascii_case(name))
+    }
+
     fn paths(&self) -> Vec<PathBuf> {
         let Ok(files) = fs::read_dir(self.presets_folder()) else { return Vec::new() };
         let paths = files.filter_map(|file| Some(file.ok()?.path()));

@@ -62,7 +62,7 @@ pub(crate) enum Chore {
         /// Serve the page to this machine.
         #[arg(long)]
         serve: bool,
-        /// At which port; 0 for any that is free.
+        /// Port to serve at; 0 takes any free one.
         #[arg(long, value_name = "N", default_value_t = 8017, requires = "serve")]
         port: u16,
         /// Play it in headless Chromium: compare its samples with the renderer's, and measure.
@@ -126,19 +126,19 @@ pub(crate) fn run(chore: &Chore) -> Result<(), String> {
     // Paths on the command line are relative to the caller’s folder.
     command.current_dir(std::env::current_dir().map_err(|error| format!("the present folder: {error}"))?);
     eprintln!("building the chores that use the engine; the first time takes minutes");
-    end_as(command)
+    replace_by(command)
 }
 
-/// Puts the command in this program's place, as cargo then does with the program that it runs: whoever ends this one ends that.
+/// Replaces this process by the command (`exec`), as `cargo run` does too: a signal to this process reaches the chore.
 #[cfg(all(unix, not(feature = "engine")))]
-fn end_as(mut command: std::process::Command) -> Result<(), String> {
+fn replace_by(mut command: std::process::Command) -> Result<(), String> {
     use std::os::unix::process::CommandExt as _;
     Err(format!("cargo: {}", command.exec()))
 }
 
 /// Runs the command and ends with its exit code.
 #[cfg(all(not(unix), not(feature = "engine")))]
-fn end_as(mut command: std::process::Command) -> Result<(), String> {
+fn replace_by(mut command: std::process::Command) -> Result<(), String> {
     let status = command.status().map_err(|error| format!("cargo: {error}"))?;
     std::process::exit(status.code().unwrap_or(1));
 }

@@ -16,7 +16,8 @@ pub(super) fn open_first<T>(
     systems: impl Fn() -> Vec<String>,
     say: impl Fn(String),
 ) -> Result<(Chosen, T), (String, Option<Chosen>)> {
-    let is_given = Chosen { midi_in: None, ..given.clone() } != Chosen::default();
+    let says = |chosen: &Chosen| Chosen { midi_in: None, ..chosen.clone() } != Chosen::default();
+    let is_given = says(&given);
     let first = merged(given, last);
     let error = match open(&first) {
         Ok(opened) => return Ok((first, opened)),
@@ -25,9 +26,9 @@ pub(super) fn open_first<T>(
     };
     match substitute(&first, open, systems) {
         Some(opened) => {
-            // Nobody misses a device that was never chosen.
-            if first.host.is_some() || first.device.is_some() {
-                say(format!("not on the usual device: {error}"));
+            // Who has chosen nothing misses nothing.
+            if says(&first) {
+                say(format!("not as chosen the last time: {error}"));
             }
             Ok(opened)
         }
@@ -100,7 +101,11 @@ mod tests {
                 false => Err(sprung::Error::value("--device", "none; ‘--list’ shows what there is".to_owned())),
             };
             let systems = || ["alsa", "jack"].map(str::to_owned).to_vec();
-            open_first(given.clone(), last.clone(), open, systems, |_| ()).map(|(chosen, ())| chosen)
+            let is_told = std::cell::Cell::new(false);
+            let opened = open_first(given.clone(), last.clone(), open, systems, |_| is_told.set(true));
+            let misses = opened.is_ok() && last.host.is_some();
+            assert_eq!(is_told.get(), misses, "{given:?}, {last:?}");
+            opened.map(|(chosen, ())| chosen)
         };
         let none = Chosen::default();
         let keys = Chosen { midi_in: Some("Key".to_owned()), ..Chosen::default() };

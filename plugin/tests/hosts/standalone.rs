@@ -189,6 +189,7 @@ const ENTER: u8 = 36;
 const CONTROL: u8 = 37;
 const SHIFT: u8 = 50;
 const Z: u8 = 52;
+const MINUS: u8 = 20;
 const EQUALS: u8 = 21;
 
 pub(crate) fn keys_search_and_undo_and_zoom() {
@@ -216,6 +217,7 @@ pub(crate) fn keys_search_and_undo_and_zoom() {
     presses("it is done again", &[CONTROL, SHIFT, Z], &|| has("Gong"));
     let is_larger = || std::fs::read_to_string(stand.state()).unwrap().contains("\"zoom\":");
     presses("the window is larger", &[CONTROL, EQUALS], &is_larger);
+    presses("and as it was", &[CONTROL, MINUS], &|| !is_larger());
     running.signal(libc::SIGINT);
     assert_eq!(running.ends().code(), Some(0));
 }

@@ -5,9 +5,9 @@
 
 pub mod held;
 pub mod octaves;
-pub mod picture;
 pub mod preset;
 pub mod recordings;
+pub mod spectrogram;
 
 use super::level::peak;
 use super::log_mel::{RATE, hertz, mel};

@@ -76,15 +76,19 @@ function pointers(place, play) {
 function computerKeys(place, play, keys) {
   const codes = new Map(ROWS.flatMap(([first, row]) => row.split(" ").map((code, n) => [code, first + n])));
   const down = new Map();
-  // The list that a pointer has chosen from: letters play notes there, arrows walk on. They search one that Tab has led to.
+  // The list last clicked: letters typed there play notes and arrows still choose. A list reached by Tab is searched by letters.
+  // It counts from the click on, not from a choice: browsers give the keys of an open list to the list, not to the page, and whoever
+  // chooses the same sound again makes no change.
   let pointed;
   addEventListener("pointerdown", ({ target }) => (pointed = target.closest("select")));
   addEventListener("keydown", (event) => {
     if (event.key === "Tab") pointed = undefined;
-    // What plays a note and repeats must not search a list either.
-    if (down.has(event.code)) event.preventDefault();
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    // No character searches the clicked list, not even one that plays no note; and a held key that plays one searches no list.
+    const isCharacter = event.key.length === 1 && event.key !== " ";
+    if ((event.target === pointed && isCharacter) || (event.repeat && down.has(event.code))) event.preventDefault();
     const searches = event.target.matches("select") && event.target !== pointed;
-    if (event.repeat || event.ctrlKey || event.metaKey || event.altKey || searches) return;
+    if (event.repeat || searches) return;
     let key = codes.get(event.code);
     const focused = event.target.dataset?.key;
     // Arrows move along the keyboard; Enter and space play the key that has the focus.

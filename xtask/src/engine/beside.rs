@@ -1,8 +1,8 @@
 //! `cargo xtask measure --beside`: where the factory's sounds of General MIDI stand beside two soundfonts.
 
 use sprung::internals::measures::from_onset;
-use sprung::internals::measures::picture::{HELD as PICTURED, Picture};
 use sprung::internals::measures::preset::{is_sustained, measure, of_sound};
+use sprung::internals::measures::spectrogram::{self, Spectrogram};
 use sprung::io::{Song, sound_file};
 use sprung::preset::{Preset, Programs};
 use sprung::render::{Job, Options, Tail};
@@ -27,10 +27,10 @@ const DIFFER: [(&str, f64); 8] = [
 const HELD: f64 = 4.0;
 const VELOCITY: u8 = 100;
 
-/// The keys of which pictures are compared.
-const PICTURED_KEYS: [u8; 3] = [48, 60, 72];
+/// The keys of which spectrograms are compared.
+const KEYS: [u8; 3] = [48, 60, 72];
 
-/// Prints a table of all programs, how often a figure of ours lies outside both, and how far our pictures do.
+/// Prints a table of all programs, how often a figure of ours lies outside both, and how far our spectrograms do.
 pub(crate) fn run(fonts: [&Path; 2]) -> Result<(), String> {
     for font in fonts {
         File::open(font).map_err(|error| format!("{}: {error}", font.display()))?;
@@ -41,7 +41,7 @@ pub(crate) fn run(fonts: [&Path; 2]) -> Result<(), String> {
         name(fonts[0]),
         name(fonts[1])
     );
-    let (mut outside, mut compared, mut pictures) = ([0; DIFFER.len()], [0; DIFFER.len()], vec![]);
+    let (mut outside, mut compared, mut programs) = ([0; DIFFER.len()], [0; DIFFER.len()], vec![]);
     for program in 0..128 {
         let Some(sound) = Programs::general_midi().sound(program) else { continue };
         // Kits have no figures.
@@ -66,60 +66,69 @@ pub(crate) fn run(fonts: [&Path; 2]) -> Result<(), String> {
             outside[place] += usize::from(verdict.ends_with("both"));
             println!("| {} | {sound} | {figure} | {ours:.2} | {one:.2} | {other:.2} | {verdict} |", program + 1);
         }
-        let notes = PICTURED_KEYS.map(|key| note(program, key, PICTURED));
-        let ours = notes.iter().map(|note| ours(note, preset)).collect::<Result<_, _>>()?;
-        let theirs = |font| {
-            notes.iter().map(|note| played(font, note, folder.path()).map(|sound| Picture::new(&sound))).collect()
+        let notes = KEYS.map(|key| note(program, key, spectrogram::HELD));
+        let of = |sound: &dyn Fn(&[u8]) -> Result<Vec<f32>, String>| {
+            notes.iter().map(|note| sound(note).map(|sound| Spectrogram::new(&sound))).collect::<Result<Notes, _>>()
         };
-        let [one, other]: [Result<Vec<_>, String>; 2] = fonts.map(theirs);
-        pictures.push(Pictured { program, preset: sound, of: [ours, one?, other?] });
+        let [one, other] = fonts.map(|font| of(&|note| played(font, note, folder.path())));
+        programs.push(Sounds { program, preset: sound, of: [of(&|note| rendered(note, preset))?, one?, other?] });
     }
     for ((figure, _), (outside, compared)) in DIFFER.iter().zip(outside.iter().zip(compared)) {
         println!("{figure}: {outside} of {compared} outside both");
     }
-    print_pictures(fonts, &pictures);
+    print_spectrograms(fonts, &programs);
     Ok(())
 }
 
-/// The notes of a program as pictures, one for each of the keys: ours, and those of the two fonts.
-struct Pictured {
+/// The notes of a program on [`KEYS`]; none where a font has no sound.
+type Notes = Vec<Option<Spectrogram>>;
+
+/// A program's notes: ours, and those of the two fonts.
+struct Sounds {
     program: u8,
     preset: &'static str,
-    of: [Vec<Picture>; 3],
+    of: [Notes; 3],
 }
 
-/// The mean distance in dB of the notes of a program from those of another.
-fn distance(ours: &[Picture], theirs: &[Picture]) -> f64 {
-    ours.iter().zip(theirs).map(|(ours, theirs)| ours.distance(theirs)).sum::<f64>() / ours.len() as f64
+/// The mean of what is measured of the keys that sound.
+fn mean(measured: impl Iterator<Item = Option<f64>>) -> f64 {
+    let (sum, count) = measured.flatten().fold((0.0, 0.0), |(sum, count), one| (sum + one, count + 1.0));
+    sum / count
 }
 
 /// Prints how far each program's notes lie outside both fonts', and the place of its own program when a font's programs are in the order
 /// of their distance; then the same between the fonts, which says what a place is worth.
-fn print_pictures(fonts: [&Path; 2], all: &[Pictured]) {
-    let place = |who: usize, font: usize, own: &Pictured| {
-        let least = distance(&own.of[who], &own.of[font]);
-        all.iter().filter(|other| distance(&own.of[who], &other.of[font]) < least).count() + 1
+fn print_spectrograms(fonts: [&Path; 2], all: &[Sounds]) {
+    let distance = |notes: &Notes, others: &Notes| {
+        mean(notes.iter().zip(others).map(|(note, other)| Some(note.as_ref()?.distance(other.as_ref()?))))
+    };
+    let places = |who: usize, font: usize| -> Vec<usize> {
+        let place = |own: &Sounds| {
+            let least = distance(&own.of[who], &own.of[font]);
+            all.iter().filter(|other| distance(&own.of[who], &other.of[font]) < least).count() + 1
+        };
+        all.iter().map(place).collect()
     };
     let [one, other] = fonts.map(name);
+    let ours = [places(0, 1), places(0, 2)];
     println!("\n| program | preset | outside both, dB | place by {one} | by {other} |\n|--:|---|--:|--:|--:|");
     let mut sum = 0.0;
-    for pictured @ Pictured { program, preset, of: [ours, first, second] } in all {
-        let outside = |n: usize| ours[n].outside([&first[n], &second[n]]);
-        let outside = (0..ours.len()).map(outside).sum::<f64>() / ours.len() as f64;
+    for (n, Sounds { program, preset, of: [own, one, other] }) in all.iter().enumerate() {
+        let outside = |key: usize| Some(own[key].as_ref()?.outside([one[key].as_ref()?, other[key].as_ref()?]));
+        let outside = mean((0..KEYS.len()).map(outside));
         sum += outside;
-        println!(
-            "| {} | {preset} | {outside:.2} | {} | {} |",
-            program + 1,
-            place(0, 1, pictured),
-            place(0, 2, pictured)
-        );
+        println!("| {} | {preset} | {outside:.2} | {} | {} |", program + 1, ours[0][n], ours[1][n]);
     }
     println!("outside both: {:.2} dB on average", sum / all.len() as f64);
-    for (who, whose) in ["ours", one.as_str(), other.as_str()].iter().enumerate() {
-        for (font, by) in [(1, &one), (2, &other)].iter().filter(|(font, _)| *font != who) {
-            let near = all.iter().filter(|pictured| place(who, *font, pictured) <= 5).count();
-            println!("{whose} by {by}: own program among the nearest five in {near} of {}", all.len());
-        }
+    let [by_one, by_other] = ours;
+    for (whose, by, places) in [
+        ("ours", &one, by_one),
+        ("ours", &other, by_other),
+        (&*one, &other, places(1, 2)),
+        (&*other, &one, places(2, 1)),
+    ] {
+        let near = places.iter().filter(|place| **place <= 5).count();
+        println!("{whose} by {by}: own program among the nearest five in {near} of {}", all.len());
     }
 }
 
@@ -127,15 +136,15 @@ fn name(font: &Path) -> String {
     font.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The picture of a note of ours.
-fn ours(note: &[u8], preset: &Preset) -> Result<Picture, String> {
-    let played = || {
+/// A note of ours, as one channel.
+fn rendered(note: &[u8], preset: &Preset) -> Result<Vec<f32>, String> {
+    let render = || {
         let (song, kit) = (Song::parse(note, "note.mid")?, preset.kit());
         let options = Options { sample_rate: 44_100, tail: Tail::Seconds(1.0), ..Options::default() };
         Job::new(&song, &kit, options).samples()
     };
-    let [left, right] = played().map_err(|error| format!("{}: {error}", preset.name))?;
-    Ok(Picture::new(&left.iter().zip(&right).map(|(left, right)| 0.5 * (left + right)).collect::<Vec<_>>()))
+    let [left, right] = render().map_err(|error| format!("{}: {error}", preset.name))?;
+    Ok(left.iter().zip(&right).map(|(left, right)| 0.5 * (left + right)).collect())
 }
 
 /// A note on a soundfont, as one channel, without reverb and chorus.

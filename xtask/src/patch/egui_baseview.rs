@@ -42,8 +42,8 @@ pub(super) const EDITS: &[Edit] = &[
     // host, since on Windows the system calls this code.
     edit(WINDOW, "            self.window.focus().unwrap();\n", "            let _ = self.window.focus();\n"),
     edit(WINDOW, "                    self.window.focus()?;\n", "                    let _ = self.window.focus();\n"),
-    // The slash, which searches, the brackets, which choose the octave, those that zoom, the manual's and that which names were no keys;
-    // nor was any letter with Shift.
+    // Not translated were: `/` (search), `[` `]` (octave), `+` `-` `=` (zoom), F1 (manual), F2 (rename a macro), and all letters with
+    // Shift.
     edit(
         TRANSLATE,
         "            'z' => Key::Z,

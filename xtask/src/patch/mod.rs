@@ -1,10 +1,10 @@
 //! `cargo xtask patch`: writes packages used by the plugin, as on crates.io but with the corrections in this folder.
 //!
 //! The corrections keep the wrapper's VST3 from crashing its host and from leaking file descriptors, make sure that a closed
-//! window is gone and one that is shown late is drawn, give the window the host's scale, pass on dropped files and three more keys,
-//! let the window open the host's menu of a parameter, and let a plugin with many outputs play on those that a host has buffers
-//! for. On Windows they keep a click from ending the host, and pass on the keys that nobody types. And the compiler warns of
-//! nothing. `plugin/UPSTREAM.md` describes each fault as in a bug report.
+//! window is gone and one that is shown late is drawn, give the window the host's scale, pass on dropped files and more keys, let
+//! the window open the host's menu of a parameter, and let a plugin with many outputs play on those that a host has buffers for. On
+//! Windows they keep a click from ending the host, and pass on the keys that nobody types. `plugin/UPSTREAM.md` describes these
+//! faults as in bug reports. One more edit corrects no fault: it only silences a warning of the compiler.
 
 mod baseview;
 mod calls;

@@ -1,8 +1,8 @@
-//! An edit of how a state is read: the compiler warns of nothing in it.
+//! An edit of how a state is read: it only silences a warning of the compiler.
 
 use super::edit::{Edit, STATE, edit};
 
-// Only builds with assertions use the two names that the last arm gives, and a package beside ours is not spared the warnings. Names
-// of the same values stand outside the match.
+// In release builds the last arm does not use the two names that it binds, and rustc warns, since cargo hides warnings of registry
+// packages only. The outer variables have the same names and values, so `_` does.
 pub(super) const EDITS: &[Edit] =
     &[edit(STATE, "                (param_ptr, param_value) => {\n", "                _ => {\n")];

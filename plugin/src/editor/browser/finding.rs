@@ -21,12 +21,14 @@ pub(super) struct Finding {
 #[derive(Default)]
 pub(super) struct Found {
     pub(super) sounds: Vec<Arc<Listed>>,
-    /// What is said above the sounds from a place on.
+    /// Headings, each with the place of the first sound below it.
     pub(super) headings: Vec<(usize, String)>,
+    /// How many of the sounds are of the chosen category.
+    pub(super) own: usize,
 }
 
 impl Found {
-    /// These sounds after the others, below what is said of them, which may be nothing.
+    /// Appends sounds, under a heading unless that is empty.
     fn with(mut self, says: &str, sounds: Vec<Arc<Listed>>) -> Self {
         if !says.is_empty() {
             self.headings.push((self.sounds.len(), says.to_owned()));
@@ -44,30 +46,36 @@ impl Finding {
             self.tags.retain(&mut found);
             found
         };
-        let (found, name, words) = (of(self.category), self.category.name(), self.words.trim().to_lowercase());
+        let (found, words) = (of(self.category), self.words.trim().to_lowercase());
+        let all = Found { own: found.len(), ..Found::default() };
         if !found.is_empty() && (words.is_empty() || self.category == Category::All) {
-            return Found::default().with("", found);
+            return all.with("", found);
         }
         if words.is_empty() && self.tags.are_empty() {
-            return Found::default().with(self.category.invitation(), found);
+            return all.with(self.category.invitation(), found);
         }
         let mut elsewhere = of(Category::All);
         if elsewhere.is_empty() {
             let (near, says) = sounds.nearest(&self.words, |_| true);
-            return Found::default().with(says, near);
+            return all.with(says, near);
         }
+        let name = match (self.category, &self.likeness.found) {
+            (Category::Like, Some((other, _))) => format!("“Like {other}”"),
+            (category, _) => category.name(),
+        };
         if found.is_empty() {
-            return Found::default().with(&format!("None in {name}. Elsewhere:"), elsewhere);
+            return all.with(&format!("None in {name}. Elsewhere:"), elsewhere);
         }
         elsewhere.retain(|sound| !found.iter().any(|own| Arc::ptr_eq(own, sound)));
         let is_named = |sound: &Arc<Listed>| sound.name().to_lowercase() == words;
-        // Enter takes the first: a name is meant, although the family of another search was left chosen.
+        // Enter loads the first. Whoever types a whole name means that sound, even if another family is still chosen.
         let comes_first = |sound: &Arc<Listed>| is_named(sound) && !found.iter().any(is_named);
         let (named, others): (Vec<_>, Vec<_>) = elsewhere.into_iter().partition(comes_first);
         let own = if named.is_empty() { String::new() } else { format!("In {name}:") };
-        let parts = [(format!("Named so, but not in {name}:"), named), (own, found), ("Elsewhere:".to_owned(), others)];
+        let parts =
+            [(format!("With this name, not in {name}:"), named), (own, found), ("Elsewhere:".to_owned(), others)];
         let parts = parts.into_iter().filter(|(_, part)| !part.is_empty());
-        parts.fold(Found::default(), |all, (says, part)| all.with(&says, part))
+        parts.fold(all, |all, (says, part)| all.with(&says, part))
     }
 
     /// Shows all of a category: words and tags of another search would hide most of it.
@@ -101,17 +109,24 @@ mod tests {
             let names: Vec<String> = found.sounds.iter().map(|sound| sound.name().to_owned()).collect();
             (names, found.headings)
         };
-        let (names, headings) = find(Category::Own, "marimba");
+        let own_of = |category, words: &str| {
+            Finding { category, words: words.to_owned(), ..Finding::default() }.find(&sounds).own
+        };
+        let (mut names, headings) = find(Category::Own, "marimba");
         let place = names.iter().position(|name| name == "My Glass Room").unwrap();
         assert!(names[0] == "Marimba" && names[..place].iter().all(|name| name.contains("Marimba")), "{names:?}");
-        let says = [(0, "Named so, but not in Your own:".to_owned()), (place, "In Your own:".to_owned())];
+        let says = [(0, "With this name, not in Your own:".to_owned()), (place, "In Your own:".to_owned())];
         assert_eq!(headings[..2], says);
-        let mut all = find(Category::All, "marimba");
-        assert_eq!((names.len(), all.1.len()), (all.0.len(), 0), "none is lost, and none is twice");
-        all = find(Category::Own, "glass");
+        let (mut everywhere, none) = find(Category::All, "marimba");
+        names.sort_unstable();
+        everywhere.sort_unstable();
+        assert_eq!(names, everywhere, "none is lost, and none is twice");
+        assert!(none.is_empty(), "{none:?}");
+        let all = find(Category::Own, "glass");
         assert_eq!((all.0[0].as_str(), &all.1[..]), ("My Glass Room", &[(1, "Elsewhere:".to_owned())][..]));
         assert_eq!(find(Category::Own, " "), (vec!["My Glass Room".to_owned()], vec![]));
         let says = [(0, "None in Mallet. Elsewhere:".to_owned())];
         assert_eq!(find(Category::Family(Family::Mallet), "church bell").1, says);
+        assert_eq!((own_of(Category::Own, "marimba"), own_of(Category::Family(Family::Mallet), "church bell")), (1, 0));
     }
 }

@@ -34,7 +34,7 @@ impl Way {
         let last = shelves.last()?.end - 1;
         let Some(place) = place else { return Some(if self == Self::Last { last } else { 0 }) };
         let by_shelves = |by: isize| {
-            // To its last sound, where a shelf is not full; not beyond the first shelf and the last.
+            // A shorter shelf: its last sound. Stops at the first and the last shelf.
             let here = shelves.partition_point(|shelf| shelf.end <= place);
             let there = &shelves[here.saturating_add_signed(by).min(shelves.len() - 1)];
             (there.start + place - shelves[here].start).min(there.end - 1)

@@ -5,7 +5,7 @@ use crate::editor::body::face;
 use crate::editor::theme::{Palette, RADIUS, SMALL, TEXT};
 use crate::editor::widgets::text::line;
 use crate::editor::widgets::{list, outline, star};
-use egui::{Align2, EventFilter, Id, Rect, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo, vec2};
+use egui::{Align2, EventFilter, Id, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use sprung::internals::library::Listed;
 use std::ops::Range;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ pub(super) struct List<'a> {
     pub(super) present: &'a str,
     /// The place of the sound that was chosen by a key: the list scrolls to it.
     pub(super) chosen: Option<usize>,
-    /// What is said above those from a place on.
+    /// Headings, each with the place of the first sound below it.
     pub(super) headings: &'a [(usize, String)],
 }
 
@@ -84,23 +84,23 @@ impl List<'_> {
     /// Shows the cells of the sounds on their shelves, and the headings above these.
     fn show_shelves(&self, ui: &mut Ui, rect: Rect, palette: &Palette, mut cell: impl FnMut(&Ui, usize, Rect)) {
         let [width, height] = tile(rect);
-        let (columns, count) = (list::columns(rect, width), self.found.len());
-        let shelves = shelves(rect, count, self.headings);
-        let mut inner = ui.new_child(UiBuilder::new().id_salt("sounds").max_rect(rect));
-        ScrollArea::vertical().id_salt("sounds").auto_shrink(false).show(&mut inner, |ui| {
-            let whole = shelves.len() as f32 * height + self.headings.len() as f32 * ROW;
-            let size = vec2(ui.available_width() / columns as f32, height);
-            let (area, _) = ui.allocate_exact_size(vec2(ui.available_width(), whole), Sense::hover());
-            let mut corner = area.min;
-            // The last one is empty: where nothing is found, that is said.
-            for shelf in shelves.into_iter().chain(std::iter::once(count..count)) {
-                for (_, says) in self.headings.iter().filter(|(place, _)| *place == shelf.start) {
-                    let at = Rect::from_min_size(corner, vec2(area.width(), ROW));
-                    line(ui.painter(), at, Align2::LEFT_CENTER, says, TEXT, palette.muted);
-                    corner.y += ROW;
-                }
-                for (column, place) in shelf.enumerate() {
-                    let at = Rect::from_min_size(corner + vec2(column as f32 * size.x, 0.0), size);
+        let columns = list::columns(rect, width);
+        let shelves = shelves(rect, self.found.len(), self.headings);
+        let whole = shelves.len() as f32 * height + self.headings.len() as f32 * ROW;
+        list::scrolled(ui, rect, "sounds", whole, |ui, area| {
+            // What lies below so many shelves and headings begins here.
+            let top = |shelves: usize, headings: usize| area.top() + shelves as f32 * height + headings as f32 * ROW;
+            for (number, (first, says)) in self.headings.iter().enumerate() {
+                let above = shelves.partition_point(|shelf| shelf.end <= *first);
+                let at = Rect::from_min_size(pos2(area.left(), top(above, number)), vec2(area.width(), ROW));
+                line(ui.painter(), at, Align2::LEFT_CENTER, says, TEXT, palette.muted);
+            }
+            let size = vec2(area.width() / columns as f32, height);
+            for (number, shelf) in shelves.iter().enumerate() {
+                let above = self.headings.partition_point(|(first, _)| *first <= shelf.start);
+                for (column, place) in shelf.clone().enumerate() {
+                    let corner = pos2(area.left() + column as f32 * size.x, top(number, above));
+                    let at = Rect::from_min_size(corner, size);
                     if self.chosen == Some(place) {
                         ui.scroll_to_rect(at.expand(height), None);
                     }
@@ -108,7 +108,6 @@ impl List<'_> {
                         cell(ui, place, at);
                     }
                 }
-                corner.y += height;
             }
         });
     }
@@ -119,7 +118,7 @@ fn tile(rect: Rect) -> [f32; 2] {
     TILES[usize::from(rect.height() < LOW)]
 }
 
-/// The places of the sounds on each shelf of a list of this size: those below a heading begin one of their own.
+/// The places of the sounds on each shelf of a list of this size: a heading starts a new shelf.
 pub(super) fn shelves(rect: Rect, count: usize, headings: &[(usize, String)]) -> Vec<Range<usize>> {
     let columns = list::columns(rect, tile(rect)[0]);
     let (mut shelves, mut start) = (Vec::new(), 0);

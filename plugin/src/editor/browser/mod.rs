@@ -153,15 +153,16 @@ impl Browser {
         let (search, rest) = list.split_top_bottom_at_y(list.top() + 28.0);
         let (tags, rows) = rest.split_top_bottom_at_y(rest.top() + tags::height(list.height() < LOW));
         let import = search.with_max_y(search.top() + 22.0).with_min_x(search.right() - IMPORT);
-        let Found { sounds: found, headings } = self.finding.find(&sounds);
+        let Found { sounds: found, headings, own } = self.finding.find(&sounds);
         // Once a sound has been tried for its words, the search has no use for keys that move in them.
         let words = if self.tried.as_ref() == Some(&self.finding.words) { "" } else { &self.finding.words };
         let command = keys::asked(ui, search_field(), words, found.len());
-        let count = if headings.is_empty() { self.finding.category.counted(found.len()) } else { String::new() };
+        // Where there are none, a heading says so.
+        let count = if own > 0 || headings.is_empty() { self.finding.category.counted(own) } else { String::new() };
         let clicks_elsewhere = self.finding.show_search(ui, search.with_max_x(import.left() - 4.0), &count, palette);
-        let narrows = |at| categories.contains(at) || tags.contains(at);
-        if clicks_elsewhere && ui.input(|input| input.pointer.interact_pos()).is_some_and(narrows) {
-            // What is typed next would be played otherwise.
+        let is_filter = |at| categories.contains(at) || tags.contains(at);
+        if clicks_elsewhere && ui.input(|input| input.pointer.interact_pos()).is_some_and(is_filter) {
+            // Otherwise letters typed next would play notes.
             ui.memory_mut(|memory| memory.request_focus(search_field()));
         }
         let response = button(ui, import, "Import", "Import files", Look::Plain, palette);

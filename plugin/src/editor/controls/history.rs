@@ -5,7 +5,6 @@ use super::gestures::{Gestures, load};
 use crate::params::SprungParams;
 use crate::state::State;
 use nice_plug_core::context::gui::GuiContext;
-use sprung::internals::library::Library;
 use sprung::params::{PARAM_COUNT, PARAMS, Values};
 use sprung::preset::Playable;
 use std::time::{Duration, Instant};
@@ -57,20 +56,9 @@ struct Trial {
 }
 
 impl History {
-    /// No steps yet, of a sound that came with a project or from the run before: it is changed unless the factory or the user has it as it
-    /// is. May read the user's files.
-    pub(crate) fn of_loaded(params: &SprungParams, library: Option<&Library>) -> Self {
-        let now = params.state();
-        let is_as = |kept: Playable| {
-            let kept = params.suited(State::new(kept, now.seed, now.view));
-            kept.playable == now.playable && kept.values == now.values && now.pad.is_none()
-        };
-        let is_own =
-            |library: &Library| library.entries().into_iter().filter_map(|entry| entry.playable.ok()).any(is_as);
-        let is_factorys = || Playable::find(now.playable.name()).is_ok_and(is_as);
-        // Nothing has been made of a plain mass yet.
-        let is_kept = is_as(State::default().playable) || is_factorys() || library.is_some_and(is_own);
-        Self { is_changed: !is_kept, ..Self::default() }
+    /// No steps yet, of a sound that came with a project or from the run before.
+    pub(crate) fn of_loaded(is_changed: bool) -> Self {
+        Self { is_changed, ..Self::default() }
     }
 
     /// Keeps the state before an action of the user's begins. It becomes a step only at [`History::end`].
@@ -188,7 +176,8 @@ impl History {
         (self.is_changed, self.turned) = (false, None);
     }
 
-    /// Whether the user has changed the sound, or the kit whose pad is edited, since it was loaded or saved.
+    /// Whether the sound, or the kit whose pad is edited, differs from what was loaded or saved; after a project or a restart, from all that
+    /// is kept.
     pub(crate) fn is_changed(&self) -> bool {
         self.is_changed
     }

@@ -36,18 +36,24 @@ pub(in crate::editor) fn take(key: u8, controls: &mut Controls) {
     controls.history.end_of_pad(format!("edit {}", name_of(key)), is_changed, controls.params);
 }
 
+/// The sound of a state as a whole: a pad's, while it is edited, back on its kit.
+pub(in crate::editor) fn whole(state: State) -> Playable {
+    let State { playable: Playable::Preset(preset), pad: Some(EditedPad { key, kit }), .. } = &state else {
+        return state.into_sound();
+    };
+    let mut whole = (**kit).clone();
+    give(&mut whole, *key, preset);
+    Playable::Kit(whole)
+}
+
 /// Loads the kit from which the sound was taken, with the sound as it is now on its pad, as one step. Returns the pad's key.
 pub(in crate::editor) fn put_back(history: &mut History, params: &SprungParams, host: &GuiContext) -> Option<u8> {
-    let State { playable: Playable::Preset(preset), pad: Some(EditedPad { key, kit }), seed, view, .. } =
-        params.state()
-    else {
-        return None;
-    };
-    let mut after = (*kit).clone();
-    give(&mut after, key, &preset);
-    let is_changed = history.is_changed() || after != *kit;
+    let state = params.state();
+    let EditedPad { key, kit } = state.pad.clone()?;
+    let (seed, view, after) = (state.seed, state.view, whole(state));
+    let is_changed = history.is_changed() || after != Playable::Kit((*kit).clone());
     history.begin(params);
-    load(State::new(Playable::Kit(after), seed, view), params, host);
+    load(State::new(after, seed, view), params, host);
     history.end_of_pad(format!("{} put back", name_of(key)), is_changed, params);
     Some(key)
 }

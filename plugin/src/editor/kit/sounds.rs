@@ -111,7 +111,7 @@ impl SoundList {
             below.min.y += paragraph(ui.painter(), below, says, SMALL, palette.muted) + 4.0;
         }
         let mut clicked = None;
-        list::show(ui, below, "kit sounds", [rect.width(), ROW], (found.len(), None), |ui, place, cell| {
+        list::show(ui, below, "kit sounds", [rect.width(), ROW], found.len(), |ui, place, cell| {
             let (sound, row) = (&found[place], cell.with_max_y(cell.bottom() - ui.spacing().item_spacing.y));
             let id = Id::unique(("kit sound", sound.name(), &sound.path));
             let response = ui.interact(row, id, Sense::click_and_drag());

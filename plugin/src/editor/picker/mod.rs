@@ -274,7 +274,7 @@ impl Picker {
             let place = rect.with_max_y(rect.top() + ROW);
             line(ui.painter(), place, Align2::LEFT_CENTER, text, TEXT, palette.muted);
         }
-        list::show(ui, rect, "files", [COLUMN, ROW], (self.listing.entries.len(), None), |ui, place, cell| {
+        list::show(ui, rect, "files", [COLUMN, ROW], self.listing.entries.len(), |ui, place, cell| {
             let (Entry { name, path, is_folder }, cell) = (&self.listing.entries[place], cell.shrink2(vec2(2.0, 1.0)));
             let response = ui.interact(cell, Id::unique(("file", place)), Sense::click());
             let is_chosen = self.chosen.contains(path);

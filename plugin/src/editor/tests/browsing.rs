@@ -12,7 +12,7 @@ use egui::{Event, Key, Modifiers, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use sprung::internals::library::Library;
 use sprung::params::Param;
-use sprung::preset::{KitPreset, Playable, Preset};
+use sprung::preset::{Playable, Preset};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -386,34 +386,6 @@ fn a_sound_is_marked_while_it_differs_from_what_was_loaded_or_saved() {
     step(&mut history, -12.0);
     history.end_swap("version B", false, &params);
     assert!(!history.is_changed(), "the other version is as it was loaded");
-}
-
-#[test]
-fn a_sound_that_comes_with_a_project_is_changed_unless_it_is_kept_as_it_is() {
-    let folder = tempfile::tempdir().unwrap();
-    let library = Library::at(folder.path());
-    for params in [SprungParams::default(), SprungParams::of_effect()] {
-        let is_changed = |state: State| {
-            params.load(State::parse(&state.to_json()).unwrap());
-            History::of_loaded(&params, Some(&library)).is_changed()
-        };
-        assert!(!is_changed(params.state()), "a new instance");
-        let of = |name: &str| params.suited(State::new(Playable::find(name).unwrap(), 0, params.view()));
-        let kits = KitPreset::factory().iter().map(|kit| kit.name.as_str());
-        for name in Preset::factory().iter().map(|preset| preset.name.as_str()).chain(kits) {
-            assert!(!is_changed(of(name)), "{name}");
-        }
-        assert!(is_changed(of("Acoustic Kit").of_pad(38).unwrap()), "the kit is in the state alone");
-        let Playable::Preset(preset) = of("Marimba").playable else { unreachable!() };
-        let moved = Preset { patch: preset.patch.clone().with(Param::Decay, 9.0), ..preset.clone() };
-        assert!(is_changed(params.suited(State::new(Playable::Preset(moved), 0, params.view()))));
-        let own = Playable::Preset(Preset { name: "Own".to_owned(), ..preset });
-        let state = params.suited(State::new(own.clone(), 0, params.view()));
-        assert!(is_changed(state.clone()), "it is in no file");
-        library.save(&own, true).unwrap();
-        assert!(!is_changed(state));
-        std::fs::remove_dir_all(library.presets_folder()).unwrap();
-    }
 }
 
 #[test]

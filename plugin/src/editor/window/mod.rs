@@ -2,6 +2,7 @@
 
 mod header;
 mod host;
+mod kept;
 mod keys;
 mod meter;
 mod presses;
@@ -138,9 +139,9 @@ impl Window {
         let shown = Shown::new(&params);
         let zoom = extent::factor(params.view());
         let (face, steps) = take(&mut *lock(&past.0));
-        let (history, versions, loads) = steps
-            .filter(|(.., loads)| *loads == params.loads())
-            .unwrap_or_else(|| (History::of_loaded(&params, library.as_ref()), Versions::default(), params.loads()));
+        let (history, versions, loads) = steps.filter(|(.., loads)| *loads == params.loads()).unwrap_or_else(|| {
+            (History::of_loaded(kept::is_nowhere(&params, library.as_ref())), Versions::default(), params.loads())
+        });
         Self {
             params,
             past,
@@ -450,7 +451,7 @@ impl Window {
     fn follow_loads(&mut self) {
         let loads = self.params.loads();
         if std::mem::replace(&mut self.loads, loads) != loads {
-            let history = History::of_loaded(&self.params, self.browser.library());
+            let history = History::of_loaded(kept::is_nowhere(&self.params, self.browser.library()));
             (self.history, self.versions) = (history, Versions::default());
             self.interaction.switched_off.clear();
             (self.interaction.typing, self.interaction.naming) = (None, None);

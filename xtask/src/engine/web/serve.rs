@@ -49,7 +49,7 @@ fn answer(mut stream: TcpStream, folder: &Path) -> std::io::Result<()> {
         stream,
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n"
     )?;
-    // HEAD asks for what GET would say of the file, without the file.
+    // HEAD: the same header as for GET, without the body.
     if request.starts_with("HEAD ") { Ok(()) } else { stream.write_all(&body) }
 }
 
