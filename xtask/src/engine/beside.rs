@@ -67,11 +67,9 @@ pub(crate) fn run(fonts: [&Path; 2]) -> Result<(), String> {
             println!("| {} | {sound} | {figure} | {ours:.2} | {one:.2} | {other:.2} | {verdict} |", program + 1);
         }
         let notes = KEYS.map(|key| note(program, key, spectrogram::HELD));
-        let of = |sound: &dyn Fn(&[u8]) -> Result<Vec<f32>, String>| {
-            notes.iter().map(|note| sound(note).map(|sound| Spectrogram::new(&sound))).collect::<Result<Notes, _>>()
-        };
-        let [one, other] = fonts.map(|font| of(&|note| played(font, note, folder.path())));
-        programs.push(Sounds { program, preset: sound, of: [of(&|note| rendered(note, preset))?, one?, other?] });
+        let [one, other] = fonts.map(|font| spectrograms(&notes, |note| played(font, note, folder.path())));
+        let own = spectrograms(&notes, |note| rendered(note, preset));
+        programs.push(Sounds { program, preset: sound, of: [own?, one?, other?] });
     }
     for ((figure, _), (outside, compared)) in DIFFER.iter().zip(outside.iter().zip(compared)) {
         println!("{figure}: {outside} of {compared} outside both");
@@ -82,6 +80,10 @@ pub(crate) fn run(fonts: [&Path; 2]) -> Result<(), String> {
 
 /// The notes of a program on [`KEYS`]; none where a font has no sound.
 type Notes = Vec<Option<Spectrogram>>;
+
+fn spectrograms(notes: &[Vec<u8>], sound: impl Fn(&[u8]) -> Result<Vec<f32>, String>) -> Result<Notes, String> {
+    notes.iter().map(|note| sound(note).map(|sound| Spectrogram::new(&sound))).collect()
+}
 
 /// A program's notes: ours, and those of the two fonts.
 struct Sounds {

@@ -10,8 +10,12 @@ use sprung::preset::Playable;
 /// the user's files.
 pub(super) fn is_nowhere(params: &SprungParams, library: Option<&Library>) -> bool {
     let (now, is_from_file) = (params.state(), params.is_from_file());
-    let (seed, view, sound) = (now.seed, now.view, whole(now));
-    let is_it = |kept: Playable| params.suited(State::new(kept, seed, view)).into_sound() == sound;
+    let (seed, view, pad, sound) = (now.seed, now.view, now.pad.as_ref().map(|pad| pad.key), whole(now));
+    let is_it = |kept: Playable| {
+        let kept = params.suited(State::new(kept, seed, view));
+        let kept = if let Some(key) = pad { kept.of_pad(key) } else { Some(kept) };
+        kept.is_some_and(|kept| whole(kept) == sound)
+    };
     // No sound of the user's has the name of one of the factory's.
     let is_kept = match Playable::find(sound.name()) {
         Ok(factorys) => is_it(factorys),
