@@ -17,7 +17,6 @@ pub(super) const CLAP_CONTEXT: &str = "src/wrapper/clap/context.rs";
 pub(super) const CLAP_WRAPPER: &str = "src/wrapper/clap/wrapper.rs";
 pub(super) const CONTEXT: &str = "src/wrapper/vst3/context.rs";
 pub(super) const INNER: &str = "src/wrapper/vst3/inner.rs";
-pub(super) const STATE: &str = "src/wrapper/state.rs";
 pub(super) const VIEW: &str = "src/wrapper/vst3/view.rs";
 pub(super) const WORKER: &str = "src/event_loop/background_thread.rs";
 pub(super) const WRAPPER: &str = "src/wrapper/vst3/wrapper.rs";

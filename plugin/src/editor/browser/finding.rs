@@ -104,13 +104,11 @@ mod tests {
         let own = Preset { name, comment, ..Preset::find("Marimba").unwrap().clone() };
         library.save(&Playable::Preset(own), false).unwrap();
         let sounds = Sounds::read(Some(library));
+        let found =
+            |category, words: &str| Finding { category, words: words.to_owned(), ..Finding::default() }.find(&sounds);
         let find = |category, words: &str| {
-            let found = Finding { category, words: words.to_owned(), ..Finding::default() }.find(&sounds);
-            let names: Vec<String> = found.sounds.iter().map(|sound| sound.name().to_owned()).collect();
-            (names, found.headings)
-        };
-        let own_of = |category, words: &str| {
-            Finding { category, words: words.to_owned(), ..Finding::default() }.find(&sounds).own
+            let Found { sounds, headings, .. } = found(category, words);
+            (sounds.iter().map(|sound| sound.name().to_owned()).collect::<Vec<_>>(), headings)
         };
         let (mut names, headings) = find(Category::Own, "marimba");
         let place = names.iter().position(|name| name == "My Glass Room").unwrap();
@@ -127,6 +125,7 @@ mod tests {
         assert_eq!(find(Category::Own, " "), (vec!["My Glass Room".to_owned()], vec![]));
         let says = [(0, "None in Mallet. Elsewhere:".to_owned())];
         assert_eq!(find(Category::Family(Family::Mallet), "church bell").1, says);
-        assert_eq!((own_of(Category::Own, "marimba"), own_of(Category::Family(Family::Mallet), "church bell")), (1, 0));
+        assert_eq!(found(Category::Own, "marimba").own, 1);
+        assert_eq!(found(Category::Family(Family::Mallet), "church bell").own, 0);
     }
 }

@@ -51,7 +51,8 @@ pub(in crate::editor) fn put_back(history: &mut History, params: &SprungParams, 
     let state = params.state();
     let EditedPad { key, kit } = state.pad.clone()?;
     let (seed, view, after) = (state.seed, state.view, whole(state));
-    let is_changed = history.is_changed() || after != Playable::Kit((*kit).clone());
+    let is_same = matches!(&after, Playable::Kit(after) if *after == *kit);
+    let is_changed = history.is_changed() || !is_same;
     history.begin(params);
     load(State::new(after, seed, view), params, host);
     history.end_of_pad(format!("{} put back", name_of(key)), is_changed, params);
