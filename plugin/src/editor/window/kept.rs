@@ -9,7 +9,10 @@ use sprung::preset::Playable;
 /// Whether neither the factory nor the user has the sound as it is. One that the host has loaded from a file is kept there. May read
 /// the user's files.
 pub(super) fn is_nowhere(params: &SprungParams, library: Option<&Library>) -> bool {
-    let (now, is_from_file) = (params.state(), params.is_from_file());
+    if params.is_from_file() {
+        return false;
+    }
+    let now = params.state();
     let (seed, view, pad, sound) = (now.seed, now.view, now.pad.as_ref().map(|pad| pad.key), whole(now));
     let is_it = |kept: Playable| {
         let kept = params.suited(State::new(kept, seed, view));
@@ -22,7 +25,7 @@ pub(super) fn is_nowhere(params: &SprungParams, library: Option<&Library>) -> bo
         Err(_) => library.is_some_and(|library| library.called(sound.name()).any(is_it)),
     };
     // Nothing has been made of a plain mass yet.
-    !(is_kept || is_from_file || is_it(State::default().playable))
+    !(is_kept || is_it(State::default().playable))
 }
 
 #[cfg(test)]
