@@ -146,8 +146,8 @@ fn a_synth_falls_silent_by_itself_and_stays_silent() {
     synth.process(&[Event::note_on(0, 60, 1.0)], &mut left, &mut right);
     assert!(synth.is_silent());
     let end = left.iter().rposition(|sample| *sample != 0.0).unwrap();
-    // The gain lowers the peak by 6 dB; from there, −120 dBFS is two T60s of 4,800 frames away.
-    assert!((9_400..=9_700).contains(&end), "{end}");
+    // The gain lowers the peak by 6 dB; from there, −120 dBFS is 1.9 T60s of 4,800 frames away.
+    assert!((9_000..=9_300).contains(&end), "{end}");
     assert!(left[end].abs() < 1e-6);
 }
 

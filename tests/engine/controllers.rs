@@ -109,7 +109,7 @@ fn modes_are_those_that_the_controllers_choose() {
 fn legato_moves_the_note_without_a_strike() {
     let played = |pedal: &[Event]| {
         let mut synth = Synth::new(RATE as f64, 0);
-        synth.set_patch(&patch().with(Param::Decay, 0.5));
+        synth.set_patch(&patch().with(Param::Decay, 0.6));
         let events = [pedal, &[on(0, 60), on(24_000, 62)]].concat();
         let (mut left, mut right) = (vec![0.0; RATE], vec![0.0; RATE]);
         synth.process(&events, &mut left, &mut right);

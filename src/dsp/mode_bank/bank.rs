@@ -546,17 +546,21 @@ impl ModeBank {
         f64::from(total) * f64::from(UNIT) * f64::from(UNIT)
     }
 
-    /// Sets the last modes to rest that have a smaller amplitude than `least`, up to the first that has not. Must be called at
-    /// control ticks only.
+    /// Sets the last modes to rest, [`LANES`] at a time, while the root of the mean square of a group's amplitudes, which is more than
+    /// their mean, is below `least`. Must be called at control ticks only.
     pub(crate) fn rest_below(&mut self, least: f32) {
         debug_assert!(self.frames_since() == 0);
         let State { x: Row(x), y: Row(y) } = &mut self.states[self.current];
-        while let Some(last) = self.live.checked_sub(1)
-            && x[last] * x[last] + y[last] * y[last] < least * least
-        {
-            (x[last], y[last], self.live) = (0.0, 0.0, last);
+        while let Some(last) = self.live.checked_sub(1) {
+            let group = last / LANES * LANES..self.live;
+            let energy: f32 = group.clone().map(|m| x[m] * x[m] + y[m] * y[m]).sum();
+            if energy >= least * least * group.len() as f32 {
+                break;
+            }
+            x[group.clone()].fill(0.0);
+            y[group.clone()].fill(0.0);
+            self.live = group.start;
         }
-        self.live = self.live.next_multiple_of(LANES).min(self.len);
     }
 }
 

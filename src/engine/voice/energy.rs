@@ -10,10 +10,14 @@ use libm::sqrt;
 const SILENCE: f64 = 1e-6;
 
 /// Modes that are set to rest before their voice is over. Together they stay below this amplitude, −150 dBFS, whatever their
-/// phases, at the voice's present gain (1 if that is less) and before effects. They have at most a thousandth of the energy at
+/// phases, at the voice's present gain ([`LEAST_GAIN`] if that is less) and before effects. They have at most a thousandth of the energy at
 /// which a voice is over, so its end moves by T60/14,000 at most. If the body blooms later, they start in a new phase, as all
 /// modes at rest do.
 const LEFT_OUT: f64 = 3.2e-8;
+
+/// A voice is judged as if its gain were at least this, since it may rise: to 1 at most makes what was left out 20 dB louder than said
+/// above, and a voice that has ended would be below −100 dBFS.
+const LEAST_GAIN: f64 = 0.1;
 
 /// Control ticks between two measurements of the energy. Below −110 dBFS it is measured at every tick.
 const MEASURING_TICKS: u32 = 8;
@@ -162,9 +166,9 @@ impl Energy {
     }
 }
 
-/// The gain at which a voice is judged: its own, or 1 if that is less, since it may rise.
+/// The gain at which a voice is judged.
 fn gain(fader: &Fader) -> f64 {
-    f64::from(fader.loudest()).max(1.0)
+    f64::from(fader.loudest()).max(LEAST_GAIN)
 }
 
 fn round_up(frames: u64) -> u64 {
