@@ -266,21 +266,18 @@ impl ModeBank {
     /// change until the next [`ModeBank::sweep_to`], which must follow.
     pub(crate) fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
         for (m, (frequency, t60)) in modes.take(self.len).enumerate() {
-            self.set_frequency(m, frequency);
             self.set_t60(m, t60);
+            self.half_angle[m] = 0.5 * angle_from_frequency(frequency, self.sample_rate);
+            self.transposed = true;
         }
     }
 
     /// As [`ModeBank::retune`], with the T60s that they have.
     pub(crate) fn transpose(&mut self, frequencies: impl Iterator<Item = f64>) {
-        for (m, frequency) in frequencies.take(self.len).enumerate() {
-            self.set_frequency(m, frequency);
-        }
-    }
-
-    fn set_frequency(&mut self, m: usize, frequency: f64) {
         self.leave_tables();
-        self.half_angle[m] = 0.5 * angle_from_frequency(frequency, self.sample_rate);
+        for (half_angle, frequency) in self.half_angle[..self.len].iter_mut().zip(frequencies) {
+            *half_angle = 0.5 * angle_from_frequency(frequency, self.sample_rate);
+        }
         (self.retuned, self.transposed, self.displaced) = (true, true, false);
     }
 
