@@ -15,8 +15,8 @@ const SILENCE: f64 = 1e-6;
 /// modes at rest do.
 const LEFT_OUT: f64 = 3.2e-8;
 
-/// A voice is judged as if its gain were at least this, since it may rise: to 1 at most makes what was left out 20 dB louder than said
-/// above, and a voice that has ended would be below −100 dBFS.
+/// A voice is judged as if its gain were at least this, and at least 1 while it moves, since it may rise. To rise to 1 makes what was
+/// left out 20 dB louder than said above at most, and a voice that has ended would be below −100 dBFS.
 const LEAST_GAIN: f64 = 0.1;
 
 /// Control ticks between two measurements of the energy. Below −110 dBFS it is measured at every tick.
@@ -102,7 +102,7 @@ impl Energy {
 
     /// Upper bound of the amplitude from now on: the amplitude with all modes in phase.
     pub(super) fn peak(&self, bank: &Cells, fader: &Fader) -> f64 {
-        let gain = gain(fader);
+        let gain = f64::from(fader.loudest()).max(1.0);
         (sqrt(self.measured) + sqrt(self.pending.max(0.0))) * sqrt(bank.len() as f64) * gain
     }
 
@@ -168,7 +168,7 @@ impl Energy {
 
 /// The gain at which a voice is judged.
 fn gain(fader: &Fader) -> f64 {
-    f64::from(fader.loudest()).max(LEAST_GAIN)
+    f64::from(fader.loudest()).max(if fader.is_level() { LEAST_GAIN } else { 1.0 })
 }
 
 fn round_up(frames: u64) -> u64 {
