@@ -138,7 +138,7 @@ impl ModeBank {
         (self.turned_noise, self.faded) = (false, false);
         (self.is_coloured, self.recoloured) = (false, false);
         for m in 0..self.len {
-            self.half_angle[m] = 0.5 * angle_from_frequency(modes.frequency[m], self.sample_rate);
+            self.half_angle[m] = half_angle(modes.frequency[m], self.sample_rate);
             self.ln_radius[m] = ln_radius(modes.t60[m], self.sample_rate);
         }
         [self.modes.left, self.modes.right] = self.gains;
@@ -267,7 +267,7 @@ impl ModeBank {
     pub(crate) fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
         for (m, (frequency, t60)) in modes.take(self.len).enumerate() {
             self.set_t60(m, t60);
-            self.half_angle[m] = 0.5 * angle_from_frequency(frequency, self.sample_rate);
+            self.half_angle[m] = half_angle(frequency, self.sample_rate);
             self.transposed = true;
         }
     }
@@ -275,8 +275,8 @@ impl ModeBank {
     /// As [`ModeBank::retune`], with the T60s that they have.
     pub(crate) fn transpose(&mut self, frequencies: impl Iterator<Item = f64>) {
         self.leave_tables();
-        for (half_angle, frequency) in self.half_angle[..self.len].iter_mut().zip(frequencies) {
-            *half_angle = 0.5 * angle_from_frequency(frequency, self.sample_rate);
+        for (angle, frequency) in self.half_angle[..self.len].iter_mut().zip(frequencies) {
+            *angle = half_angle(frequency, self.sample_rate);
         }
         (self.retuned, self.transposed, self.displaced) = (true, true, false);
     }
@@ -559,6 +559,11 @@ impl ModeBank {
             self.live = group.start;
         }
     }
+}
+
+/// Half of the angle by which a mode turns per frame.
+fn half_angle(frequency: f64, sample_rate: f64) -> f64 {
+    0.5 * angle_from_frequency(frequency, sample_rate)
 }
 
 /// The logarithm of the factor by which the amplitude falls per frame.

@@ -10,9 +10,9 @@ use libm::sqrt;
 const SILENCE: f64 = 1e-6;
 
 /// Modes that are set to rest before their voice is over. Together they stay below this amplitude, −150 dBFS, whatever their
-/// phases, at the voice's present gain ([`LEAST_GAIN`] if that is less) and before effects. They have at most a thousandth of the energy at
-/// which a voice is over, so its end moves by T60/14,000 at most. If the body blooms later, they start in a new phase, as all
-/// modes at rest do.
+/// phases, at the gain at which the voice is judged and before effects. They have at most a thousandth of the energy at which a
+/// voice is over, so its end moves by T60/14,000 at most. If the body blooms later, they start in a new phase, as all modes at
+/// rest do.
 const LEFT_OUT: f64 = 3.2e-8;
 
 /// A voice is judged as if its gain were at least this, and at least 1 while it moves, since it may rise. To rise to 1 makes what was
@@ -100,7 +100,8 @@ impl Energy {
         self.measured * bank.len() as f64 * gain * gain < amplitude * amplitude
     }
 
-    /// Upper bound of the amplitude from now on: the amplitude with all modes in phase.
+    /// Upper bound of the amplitude from now on: the amplitude with all modes in phase, at a gain of 1 if the voice's is less, since
+    /// it may rise.
     pub(super) fn peak(&self, bank: &Cells, fader: &Fader) -> f64 {
         let gain = f64::from(fader.loudest()).max(1.0);
         (sqrt(self.measured) + sqrt(self.pending.max(0.0))) * sqrt(bank.len() as f64) * gain
