@@ -162,7 +162,7 @@ fn the_hardest_breath_is_the_loudest() {
                 event(0, EventKind::ChannelPressure(breath)),
                 Event::note_on(0, preset.guide.home, 1.0),
             ];
-            rms(&render(&patch, RATE, &events, 38_400)[19_200..])
+            rms(&render(&patch, RATE, &events, 24_000)[12_000..])
         };
         let levels = [0.0, 0.5, 1.0].map(level);
         assert!(levels.is_sorted() && levels[2] > 1.2 * levels[0], "{}: {levels:?}", preset.name);

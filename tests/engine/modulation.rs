@@ -389,14 +389,14 @@ fn sounds_as(sound: &[f32], patch: &Patch, events: &[Event]) -> bool {
 fn every_quantity_can_be_moved_and_is_heard() {
     let events = [
         Event::note_on(0, 64, 0.6),
-        control(4000, 1, 0.5),
-        event(4000, EventKind::ChannelPressure(0.4)),
-        event(4000, EventKind::PitchBend(0.5)),
-        event(28_000, EventKind::NoteOff { key: 64, velocity: 0.9, id: None }),
+        control(2000, 1, 0.5),
+        event(2000, EventKind::ChannelPressure(0.4)),
+        event(2000, EventKind::PitchBend(0.5)),
+        event(14_000, EventKind::NoteOff { key: 64, velocity: 0.9, id: None }),
     ];
     // Without audio input, its level is not audible.
     let heard = PARAMS.iter().filter(|info| info.is_modulatable() && ![Route16, InputLevel].contains(&info.param));
-    let frames = 40_000;
+    let frames = 20_000;
     let plain = [0, 1, 2, 3, 4].map(|form| {
         let patch = busy(form).with(Macro1, 100.0).with(Route16, -25.0);
         let sound = render(&patch, 0, &events, frames);

@@ -33,7 +33,7 @@ struct Extent {
     frames: usize,
 }
 
-const FEW: Extent = Extent { step: 48, patches: 9, kits: 1, frames: 6_000 };
+const FEW: Extent = Extent { step: 64, patches: 9, kits: 1, frames: 4_000 };
 const MANY: Extent = Extent { step: 6, patches: 40, kits: 8, frames: 24_000 };
 
 /// A kit and the events that it plays, with a name for failure messages.

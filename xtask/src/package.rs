@@ -14,8 +14,7 @@ pub(crate) fn test() -> Result<Count, String> {
     let folder = root().join("src/python");
     // With the features that the tests of the other packages have, and those of what they alone need, so that nothing is compiled
     // again.
-    let mut build = cargo(&format!("build {TESTED}"));
-    run_to_end(build.env("PYO3_BUILD_EXTENSION_MODULE", "1"), "the package does not build")?;
+    run_to_end(&mut cargo(&format!("build {TESTED}")), "the package does not build")?;
     let system = System::own();
     // As Python calls modules in a library of the system's.
     let module = folder.join("sprung").join(if cfg!(windows) { "_sprung.pyd" } else { "_sprung.abi3.so" });

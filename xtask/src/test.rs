@@ -51,8 +51,9 @@ pub(crate) fn run(suite: Suite, only: &str) -> Result<(), String> {
     if total.failed == 0 { Ok(()) } else { Err("the suite failed".to_owned()) }
 }
 
-/// Runs the tests of all packages, the plugin as bundled in real hosts among them: with nextest, which needs no program to end
-/// before the next begins, or with the harness where it is missing.
+/// Runs the tests of all packages, the plugin as bundled in real hosts among them. With the harness: tests of one process share
+/// the bank and the fonts, which each of nextest's would read anew. Some that wait for what is on a screen must not wait beside
+/// others, which only nextest knows.
 fn tests(suite: Suite) -> Result<Count, String> {
     if !cfg!(target_os = "linux") {
         let mut total = count(cargo(ELSEWHERE[0]), Shows::Tests)?;
@@ -63,16 +64,16 @@ fn tests(suite: Suite) -> Result<Count, String> {
     }
     let folder =
         if suite == Suite::All { bundle::run(&System::own(), Profile::Release) } else { bundle::of_the_tests() }?;
-    let (nextest, harness) = match suite {
-        Suite::Commit => ("--status-level fail", ""),
-        Suite::All => ("--status-level slow --run-ignored all", "-- --include-ignored"),
-    };
-    let mut command = if succeeds("cargo", &["nextest", "--version"]) {
-        // One more than cores, because some wait for files, devices and other programs.
-        let threads = std::thread::available_parallelism().map_or(1, usize::from) + 1;
-        cargo(&format!("nextest run {TESTED} --no-fail-fast --test-threads {threads} {nextest}"))
-    } else {
-        cargo(&format!("test {TESTED} --no-fail-fast {harness}"))
+    let harness = format!("test {TESTED} --no-fail-fast -- --quiet");
+    let mut command = match suite {
+        Suite::Commit => cargo(&harness),
+        Suite::All if succeeds("cargo", &["nextest", "--version"]) => {
+            // One more than cores, because some wait for files, devices and other programs.
+            let threads = std::thread::available_parallelism().map_or(1, usize::from) + 1;
+            let shown = "--status-level slow --run-ignored all";
+            cargo(&format!("nextest run {TESTED} --no-fail-fast --test-threads {threads} {shown}"))
+        }
+        Suite::All => cargo(&format!("{harness} --include-ignored")),
     };
     command.env("SPRUNG_BUNDLES", folder);
     count(command, Shows::Tests)

@@ -116,7 +116,7 @@ fn what_is_held_lasts_as_long_as_its_key() {
 fn soft_notes_are_softer() {
     for preset in whole_bank() {
         let kit = preset.kit();
-        let level = |velocity| energy(&note_of(&kit, preset.guide.home, velocity, 0.5, 0.6), 0.0, 0.6);
+        let level = |velocity| energy(&note_of(&kit, preset.guide.home, velocity, 0.3, 0.3), 0.0, 0.3);
         let db = decibels(level(100.0) / level(40.0));
         // Organs, bagpipes and harpsichords do not respond to velocity.
         let least = if matches!(preset.guide.family, Some(Family::Keys | Family::Wind | Family::StruckString)) {

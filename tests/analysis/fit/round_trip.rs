@@ -8,7 +8,7 @@ use sprung::preset::Preset;
 
 const KEYS: [u8; 3] = [48, 60, 72];
 /// A preset that is fitted at every commit, in seconds.
-const ONE: (&str, u8) = ("Marimba", 60);
+const ONE: (&str, u8) = ("Xylophone", 72);
 /// Number of presets that are fitted in minutes: at equal distances in the bank, each at one of [`KEYS`].
 const MANY: usize = 24;
 /// Another seed than that of the sounds which are fitted.
