@@ -124,11 +124,6 @@ pub(super) fn time(n: usize) -> f64 {
 }
 
 impl LogMel {
-    /// The windows without the `first` ones.
-    pub(super) fn skipping(&self, first: usize) -> Self {
-        Self { columns: self.columns.get(first..).unwrap_or_default().to_vec() }
-    }
-
     /// The loudest band of all windows, in dB.
     pub(crate) fn loudest(&self) -> f64 {
         self.columns.iter().flatten().copied().fold(SILENCE_DB, f64::max)

@@ -19,8 +19,6 @@ const T60: (f64, f64) = (0.01, 20.0);
 /// Fewest windows whose decay is measured, and T60 in seconds of a band that is heard in fewer of them.
 const FEWEST_WINDOWS: usize = 4;
 const BRIEF_T60: f64 = 0.03;
-/// T60 in seconds of modes that follow the level of the noise.
-const SHORT_T60: f64 = 0.04;
 /// Range in dB, down from its loudest window, in which the decay of a band is measured.
 const FOLLOWED_DB: f64 = 45.0;
 /// Number of windows among which the loudest of a band is searched for: 1.2 s.
@@ -42,15 +40,6 @@ pub(super) fn bed([target, draft]: [&LogMel; 2], lines: &Lines, sweep: &Sweep, m
     // The sweep changes the frequencies by this factor, so divide by it.
     let lower = |partial: Partial| Partial { frequency: partial.frequency / speed(sweep, partial.t60), ..partial };
     of_bands(bands, lines, most, seed).into_iter().map(lower).collect()
-}
-
-/// Short modes for a noise that lasts as long as the sound: each band's greatest level, where `lines` are strong.
-pub(super) fn short(target: &LogMel, lines: &Lines, most: usize, seed: u64) -> Vec<Partial> {
-    let floor = target.loudest() - SPAN_DB;
-    let level = |band: usize| target.columns.iter().map(|column| column[band]).fold(f64::NEG_INFINITY, f64::max);
-    let bands = (0..BANDS).map(|band| (band, level(band))).filter(|(_, level)| *level > floor);
-    let decay = |(band, at_onset)| (band, Decay { at_onset, t60: SHORT_T60, is_smooth: false });
-    of_bands(bands.map(decay).collect(), lines, most, seed)
 }
 
 /// The modes of bands: at most `most`. If all bands together need more, each gets fewer: a band that is empty is further from the
@@ -228,19 +217,16 @@ mod tests {
         let (target, lines) = (crate::analysis::log_mel::MelBands::new().measure(&samples), Lines::new(&samples));
         let silence = LogMel { columns: Vec::new() };
         for most in [60, 100, 192] {
-            let bed = bed([&target, &silence], &lines, &Sweep::NONE, most, 1);
-            for partials in [bed, short(&target, &lines, most, 1)] {
-                assert!(partials.len() <= most && partials.len() > most / 2, "{} of {most}", partials.len());
-                let within =
-                    |band: usize, partial: &Partial| (partial.frequency - centre(band)).abs() <= 0.52 * width(band);
-                let empty = |band: &usize| !partials.iter().any(|partial| within(*band, partial));
-                assert_eq!((0..BANDS).find(empty), None, "of {most}");
-            }
+            let partials = bed([&target, &silence], &lines, &Sweep::NONE, most, 1);
+            assert!(partials.len() <= most && partials.len() > most / 2, "{} of {most}", partials.len());
+            let within =
+                |band: usize, partial: &Partial| (partial.frequency - centre(band)).abs() <= 0.52 * width(band);
+            let empty = |band: &usize| !partials.iter().any(|partial| within(*band, partial));
+            assert_eq!((0..BANDS).find(empty), None, "of {most}");
         }
         // With room for a few only, the loudest bands get them.
-        for few in [bed([&target, &silence], &lines, &Sweep::NONE, 5, 1), short(&target, &lines, 5, 1)] {
-            assert!(few.len() == 5 && few.iter().all(|partial| partial.frequency < 1500.0), "{few:?}");
-        }
+        let few = bed([&target, &silence], &lines, &Sweep::NONE, 5, 1);
+        assert!(few.len() == 5 && few.iter().all(|partial| partial.frequency < 1500.0), "{few:?}");
     }
 
     #[test]

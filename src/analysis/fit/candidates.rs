@@ -5,7 +5,7 @@ use super::drift::Drift;
 use super::movement::Sweep;
 use super::prepared::{Prepared, SLOW};
 use super::start::{Found, Source};
-use super::{bursts, held, noise, oscillators, start, sweep};
+use super::{held, oscillators, start, sweep};
 use crate::error::Result;
 
 /// Residual of the modes in dB above which noise alone may explain the sound better.
@@ -32,8 +32,7 @@ const WORTH_A_SWEEP_DB: f64 = 2.0;
 /// * If its modes leave much of it: the modes without the movement of oscillators. If these explain a held sound that modes
 ///   alone do not, the next two are left out.
 /// * Unless its modes explain it: those of each sweep that explains more.
-/// * If its modes explain little: the row of bursts with which it begins, noise that goes on for as long as the sound, and modes that
-///   noise excites, found after the noise is over.
+/// * If its modes explain little: modes that noise excites, found after the noise is over.
 pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
     // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
     let [of_still, of_drift, of_modulated, of_search, first, second, of_noise] =
@@ -79,13 +78,9 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
         found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
     }
     if still > NOISE_DB && !drifts && !sways {
-        let strike = found[0].1.clone();
-        let empty = || start::from(take, None, &Source { struck: false, ..all }, false);
-        found.extend(bursts::train(&take.mean).map(|noise| (Draft { noise, ..empty() }, strike.clone())));
-        found.push((noise::lasting(take, most, empty()), strike.clone()));
         let late = Source { late: LATE * take.seconds(), struck: false, ..all };
         let (driven, _) = analysed(take, late, of_noise, tell)?;
-        found.push((driven, strike));
+        found.push((driven, found[0].1.clone()));
     }
     found.extend(modulated);
     Ok(found)

@@ -31,16 +31,6 @@ pub(super) fn by_bands(draft: &Draft, target: &LogMel, heard: &LogMel, share: f6
     corrected_by_bands(draft, share, &corrections)
 }
 
-/// Corrects the levels of all modes of a band by its mean error, and no decays.
-pub(super) fn by_levels(draft: &Draft, target: &LogMel, heard: &LogMel) -> Draft {
-    let errors = Errors::new(target, heard);
-    let means: [Correction; BANDS] = std::array::from_fn(|band| {
-        let (sum, count) = errors.of(band).fold((0.0, 0.0), |(sum, count), (_, error)| (sum + error, count + 1.0));
-        (if count > 0.0 { sum / count } else { 0.0 }, 0.0)
-    });
-    corrected_by_bands(draft, 1.0, &means)
-}
-
 /// The draft with a share of each band's correction.
 fn corrected_by_bands(draft: &Draft, share: f64, corrections: &[Correction; BANDS]) -> Draft {
     corrected(draft, share, |partial| {
@@ -238,14 +228,5 @@ pub(super) mod tests {
                 (found.amplitude / known.amplitude - 1.0).abs() < 0.1 && (found.t60 / known.t60 - 1.0).abs() < 0.1;
             assert!(near, "{found:?}");
         }
-    }
-
-    #[test]
-    fn levels_alone_are_corrected_and_decays_stay() {
-        let (target, found) = (bands(&draft([0.4, 0.1])), draft([0.2, 0.05]));
-        let other = by_levels(&found, &target, &bands(&found));
-        let t60s = |draft: &Draft| [draft.partials[0].t60, draft.partials[1].t60];
-        assert_eq!(t60s(&other), t60s(&found));
-        assert!((other.partials[1].amplitude / found.partials[1].amplitude - 2.0).abs() < 0.1, "{:?}", other.partials);
     }
 }

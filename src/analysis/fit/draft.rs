@@ -61,30 +61,20 @@ pub(super) struct Noise {
     pub(super) seconds: f64,
     pub(super) decay: NoiseDecay,
     pub(super) attack: f64,
-    /// Number of bursts, and seconds from each to the next.
-    pub(super) hits: u8,
-    pub(super) spacing: f64,
 }
 
 impl Noise {
     /// A click.
-    pub(super) const SHORT: Self =
-        Self { seconds: 0.004, decay: NoiseDecay::Quadratic, attack: 0.0, hits: 1, spacing: 0.012 };
+    pub(super) const SHORT: Self = Self { seconds: 0.004, decay: NoiseDecay::Quadratic, attack: 0.0 };
 
-    /// The engine's longest burst in seconds, and its greatest number of bursts.
+    /// The engine's longest burst in seconds.
     pub(super) const LONGEST: f64 = 1.0;
-    pub(super) const MOST_HITS: u8 = 16;
     /// Seconds from which a burst is heard as noise, and affects the decays.
     pub(super) const AUDIBLE: f64 = 0.02;
 
     /// Whether it is heard as noise, and not as a click.
     pub(super) fn is_audible(&self) -> bool {
         self.seconds >= Self::AUDIBLE
-    }
-
-    /// Seconds from the onset to the last burst.
-    pub(super) fn last(&self) -> f64 {
-        f64::from(self.hits.saturating_sub(1)) * self.spacing
     }
 }
 
@@ -218,10 +208,6 @@ impl Draft {
         set(Param::NoiseTime, self.noise.seconds);
         set(Param::NoiseAttack, self.noise.attack);
         set(Param::NoiseDecay, f64::from(self.noise.decay.value()));
-        if self.noise.hits > 1 {
-            set(Param::NoiseHits, f64::from(self.noise.hits));
-            set(Param::NoiseSpacing, self.noise.spacing);
-        }
         if let Some(hardness) = self.hardness {
             set(Param::MalletPulse, f64::from(MalletPulse::Contact.value()));
             set(Param::MalletHardness, 100.0 * hardness);

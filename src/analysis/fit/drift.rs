@@ -12,7 +12,6 @@ use super::resample::Reader;
 use super::tones::{HOP, Tone, tones};
 use crate::analysis::line::Line;
 use crate::analysis::log_mel::RATE;
-use crate::analysis::modes::Strike;
 use crate::dsp::pitch::SweepEnvelope;
 use crate::error::Result;
 use libm::exp;
@@ -37,12 +36,12 @@ const MOST_LONGER: usize = 2;
 const LEAST_TREMOLO_DB: f64 = 0.2;
 
 /// The drift at moments that are [`HOP`] samples apart.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Drift {
     /// Logarithm of the pitch relative to its mean.
-    pub(super) pitch: Vec<f64>,
+    pitch: Vec<f64>,
     /// Logarithm of the level relative to a steady decay.
-    pub(super) level: Vec<f64>,
+    level: Vec<f64>,
     /// Number of moments in which the sound comes to its level, and whether all tones do so together.
     rise: usize,
     rises: bool,
@@ -58,24 +57,13 @@ impl Drift {
         let mut drift = Self { pitch: still.clone(), level: still, rise: attack as usize, rises: rise > SLOW };
         for _ in 0..ROUNDS {
             let still = drift.removed_from(samples);
-            let tones = tones(&still, None);
+            let tones = tones(&still);
             if tones.is_empty() {
                 return None;
             }
-            drift.add(&tones, 0);
+            drift.add(&tones);
         }
         Some(drift)
-    }
-
-    /// The drift after what it has left in a sound: how the sound without the drift differs from its modes.
-    pub(super) fn refined(&self, still: &Strike) -> Self {
-        let modes: Vec<f32> = still.samples.iter().zip(&still.residual).map(|(sample, rest)| sample - rest).collect();
-        let mut refined = self.clone();
-        let tones = tones(&still.samples, Some(&modes));
-        if !tones.is_empty() {
-            refined.add(&tones, (still.fitted_from * f64::from(RATE)) as usize / HOP);
-        }
-        refined
     }
 
     /// The pitch in semitones relative to its mean.
@@ -110,14 +98,12 @@ impl Drift {
         }
     }
 
-    /// Adds the drift of tones from a moment on.
-    fn add(&mut self, tones: &[Tone], from: usize) {
-        let [pitch, level] = self.left_in(tones, from);
+    /// Adds the drift of tones.
+    fn add(&mut self, tones: &[Tone]) {
+        let [pitch, level] = self.left_in(tones);
         // Moments of the still sound are a little off those of the sound, but the drift is slow.
         let add = |sum: &mut [f64], more: &[f64]| {
-            for (n, sum) in sum.iter_mut().enumerate() {
-                *sum += more[n.saturating_sub(from).min(more.len() - 1)];
-            }
+            sum.iter_mut().enumerate().for_each(|(n, sum)| *sum += more[n.min(more.len() - 1)]);
         };
         add(&mut self.pitch, &pitch);
         add(&mut self.level, &level);
@@ -125,9 +111,9 @@ impl Drift {
         self.pitch.iter_mut().for_each(|pitch| *pitch -= mean);
     }
 
-    /// The pitch and the level that tones have in common, from a moment on.
-    fn left_in(&self, tones: &[Tone], from: usize) -> [Vec<f64>; 2] {
-        let rise = self.rise.saturating_sub(from);
+    /// The pitch and the level that tones have in common.
+    fn left_in(&self, tones: &[Tone]) -> [Vec<f64>; 2] {
+        let rise = self.rise;
         let rising = |mut track: Vec<[f64; 2]>| {
             track.iter_mut().take(rise).for_each(|[_, weight]| *weight *= RISING);
             track

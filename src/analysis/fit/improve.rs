@@ -7,8 +7,8 @@ use super::movement::Swell;
 use super::prepared::{Prepared, SLOW};
 use super::refine::{Listener, NEAR_DB};
 use super::start::Found;
-use super::{bed, candidates, noise};
-use crate::analysis::log_mel::{self, HOP, RATE};
+use super::{bed, candidates};
+use crate::analysis::log_mel;
 use crate::error::{Error, Result};
 
 /// Share of the work until the first drafts are made.
@@ -21,8 +21,6 @@ const FALL: f64 = 0.1;
 /// Most rounds in which the swell and the levels are found in turn, and reduction of the distance in dB for which there is another one.
 const SWELL_ROUNDS: usize = 3;
 const WORTH_A_ROUND: f64 = 0.01;
-/// Share of the work on a draft of noise in which that is shaped.
-const SHAPED: f64 = 0.4;
 /// Seeds of the pans of the modes of two beds.
 const SEEDS: [u64; 2] = [11, 12];
 /// Rounds of corrections at a time.
@@ -41,16 +39,7 @@ pub(super) fn fit(take: &mut Prepared, most: usize, progress: &mut dyn FnMut(f64
             _ => Lines::new(&take.mean),
         };
         let part = |share: f64| ANALYSED + (1.0 - ANALYSED) * (n as f64 + share) / count;
-        let is_shaped = draft.noise.is_audible();
-        let (draft, from) = if is_shaped {
-            let tell = |listener: &mut Listener, share: f64| listener.tell(part(SHAPED * share));
-            listener.tell(part(0.0))?;
-            (noise::shaped(draft, take, most, &mut listener, &tell)?, SHAPED)
-        } else {
-            (draft, 0.0)
-        };
-        let part = |share: f64| part(from + (1.0 - from) * share);
-        let (draft, distance) = improved(draft, &mut listener, &lines, most, is_shaped, &part)?;
+        let (draft, distance) = improved(draft, &mut listener, &lines, most, &part)?;
         if distance < least {
             (best, least) = (Some((draft, strike)), distance);
         }
@@ -101,13 +90,12 @@ pub(super) fn fallen(
     Ok((distance < let_go).then_some((whole, other)))
 }
 
-/// The draft with a bed, and corrected until it hardly comes nearer, and its distance. Noise that is shaped already stays as it is.
+/// The draft with a bed, and corrected until it hardly comes nearer, and its distance.
 fn improved(
     mut draft: Draft,
     listener: &mut Listener,
     lines: &Lines,
     most: usize,
-    is_shaped: bool,
     part: &dyn Fn(f64) -> f64,
 ) -> Result<(Draft, f64)> {
     let slow = listener.take.rise > SLOW;
@@ -122,10 +110,7 @@ fn improved(
     for (pass, seed) in [(1.0, SEEDS[0]), (2.0, SEEDS[1])] {
         let heard = listener.hear(&draft)?;
         let room = most.saturating_sub(draft.partials.len());
-        // Before the last burst, a band does not decay.
-        let from = (draft.noise.last() * f64::from(RATE)) as usize / HOP;
-        let [wanted, heard] = [&listener.target, &heard].map(|bands| bands.skipping(from));
-        let more = bed::bed([&wanted, &heard], lines, &draft.sweep, room, seed);
+        let more = bed::bed([&listener.target, &heard], lines, &draft.sweep, room, seed);
         if more.is_empty() && draft.partials.is_empty() {
             break;
         }
@@ -140,8 +125,7 @@ fn improved(
             match noise {
                 // Choosing it anew brought nothing: twenty presets came 0.00 dB nearer in the mean.
                 Some(noise) => other.noise = noise,
-                None if !is_shaped => listener.choose_noise(&mut other)?,
-                None => (),
+                None => listener.choose_noise(&mut other)?,
             }
             noise = Some(other.noise);
             let distance = listener.correct(&mut other, ROUNDS)?;

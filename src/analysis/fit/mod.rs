@@ -2,8 +2,8 @@
 //!
 //! The sweep of the pitch is found and removed; of a held sound, all drift that its tones have in common. The sound,
 //! whose pitch is now constant, is analysed into modes. Their residual becomes a bed: modes that noise excites. If
-//! modes explain a sound badly, rows of bursts are counted, noise that lasts as long as the sound is shaped, and regular
-//! movement becomes that of low-frequency oscillators. Then each draft is played and compared with the recording, band by
+//! modes explain a sound badly, noise excites those found once it is over, and regular movement becomes that of
+//! low-frequency oscillators. Then each draft is played and compared with the recording, band by
 //! band ([`super::log_mel`]), to
 //! correct the mallet's hardness, the rise, fall and length of swells and of noise, levels and decays. The nearest
 //! draft is the result.
@@ -12,7 +12,7 @@
 //! |---|---|
 //! | `take`, `names`, `prepared`, `release` | reads a take: its key and velocity, its onset and end, and where its key is let go |
 //! | `pitch`, `tones`, `pitch_track`, `sweep`, `drift`, `held`, `resample` | the pitch over time, and the sound without its movement |
-//! | `start`, `bed`, `noise`, `bursts`, `oscillators`, `movement` | first drafts: modes, noise for the rest, bursts, LFOs |
+//! | `start`, `bed`, `oscillators`, `movement` | first drafts: modes, noise for the rest, LFOs |
 //! | `draft`, `audition` | a draft as a patch; plays it |
 //! | `candidates`, `improve`, `refine`, `correct`, `shaping` | the possible drafts, and their corrections by what they sound like |
 //! | `body`, `levels`, `tuned` | a physical model in place of a table of modes |
@@ -24,7 +24,6 @@
 mod audition;
 mod bed;
 mod body;
-mod bursts;
 mod candidates;
 mod correct;
 mod draft;
@@ -36,7 +35,6 @@ mod levels;
 mod like;
 mod movement;
 mod names;
-mod noise;
 mod oscillators;
 mod pitch;
 mod pitch_track;

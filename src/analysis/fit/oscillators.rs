@@ -4,11 +4,12 @@ use super::draft::MOST_OSCILLATORS;
 use super::movement::{Oscillator, Sweep};
 use super::pitch_track::{self, Point};
 use super::prepared::Prepared;
+use super::simplex;
 use crate::analysis::level::{dbfs, rms};
+use crate::analysis::line::Line;
 use crate::analysis::log_mel::RATE;
 use crate::error::{Error, Result};
 use crate::params::Shape;
-use nalgebra::{DMatrix, DVector};
 
 /// Phases per turn, and shapes that are tried with so many of them: most shapes are their own negative half a turn later.
 const PHASES: f64 = 16.0;
@@ -19,19 +20,12 @@ const FASTEST_OF_TONES: f64 = 16.0;
 /// Fewest cycles of the slowest oscillator, and step between rates, in cycles over the whole track.
 const FEWEST_CYCLES: f64 = 1.5;
 const STEP: f64 = 0.25;
-/// Share of the squares left that an oscillator must explain, and that all must explain together.
+/// Steps of the fine search.
+const STEPS: usize = 30;
+/// Share of the squares left that an oscillator must explain, that all must explain together, and below which no more are looked for.
 const WORTH: f64 = 0.25;
 const WORTH_ALL: f64 = 0.6;
-/// Share of the squares below which no more oscillators are looked for.
 const LITTLE: f64 = 0.01;
-/// Share of an oscillator's square that must differ from what is explained already.
-const DIFFERENT: f64 = 1e-3;
-/// Rounds of the fine search, its first step as a share of a step of the coarse one, and its shrinkage per round.
-const ROUNDS: usize = 14;
-const FIRST: f64 = 0.5;
-const SHRINKAGE: f64 = 0.75;
-/// Added to the diagonal of the equations, so that they can be solved.
-const RIDGE: f64 = 1e-9;
 /// Samples from one level to the next, and range of levels in dB.
 const HOP: usize = 128;
 const RANGE_DB: f64 = 45.0;
@@ -43,113 +37,66 @@ const FEWEST: usize = 100;
 const MOST_SEMITONES: f64 = 48.0;
 const MOST_DB: f64 = 36.0;
 
-/// A track that is explained by a mean, oscillators, and perhaps a slope.
+/// A track that is explained by a line and oscillators.
 struct Track {
-    points: Vec<Point>,
-    has_slope: bool,
-    /// Hz of the fastest oscillator.
-    fastest: f64,
-    oscillators: Vec<Oscillator>,
-    /// The factors of the oscillators.
-    factors: Vec<f64>,
     /// What is left of each value.
-    rest: Vec<f64>,
-    /// An orthonormal base of what is explained already.
-    base: Vec<Vec<f64>>,
+    rest: Vec<Point>,
+    /// Oscillators, each with its depth in the track's unit.
+    found: Vec<(Oscillator, f64)>,
     /// Weighted squares of all that is not steady.
     squares: f64,
 }
 
 impl Track {
-    /// A track that some oscillators move already.
-    fn new(points: Vec<Point>, has_slope: bool, oscillators: Vec<Oscillator>) -> Self {
-        let mut track = Self {
-            points,
-            has_slope,
-            fastest: FASTEST,
-            oscillators: Vec::new(),
-            factors: Vec::new(),
-            rest: Vec::new(),
-            base: Vec::new(),
-            squares: 0.0,
-        };
-        track.solve();
+    /// Values without their mean, or the line through them if they may fall.
+    fn new(mut points: Vec<Point>, falls: bool) -> Self {
+        if let Some(line) = Line::through(points.iter().copied()) {
+            let line = if falls { line } else { Line { slope: 0.0, ..line } };
+            points.iter_mut().for_each(|[time, value, _]| *value -= line.at(*time));
+        }
+        let mut track = Self { rest: points, found: Vec::new(), squares: 0.0 };
         track.squares = track.left();
-        track.oscillators = oscillators;
-        track.solve();
         track
-    }
-
-    /// Seconds from its first value to its last.
-    fn seconds(&self) -> f64 {
-        self.points.last().zip(self.points.first()).map_or(0.0, |(last, first)| last[0] - first[0])
     }
 
     /// Whether it has enough values, and these move by a least standard deviation.
     fn moves(&self, least: f64) -> bool {
-        let weight: f64 = self.points.iter().map(|point| point[2]).sum();
-        self.points.len() >= FEWEST && self.squares > least * least * weight
+        let weight: f64 = self.rest.iter().map(|point| point[2]).sum();
+        self.rest.len() >= FEWEST && self.squares > least * least * weight
     }
 
     /// Weighted squares of what is left.
     fn left(&self) -> f64 {
-        self.rest.iter().zip(&self.points).map(|(rest, point)| point[2] * rest * rest).sum()
+        self.rest.iter().map(|[_, rest, weight]| weight * rest * rest).sum()
     }
 
-    fn product(&self, a: &[f64], b: &[f64]) -> f64 {
-        a.iter().zip(b).zip(&self.points).map(|((a, b), point)| point[2] * a * b).sum()
-    }
-
-    fn values(&self, oscillator: &Oscillator) -> Vec<f64> {
-        self.points.iter().map(|[time, ..]| oscillator.at(*time)).collect()
-    }
-
-    /// Solves for mean, slope and factors together.
-    fn solve(&mut self) {
-        let mut functions = vec![vec![1.0; self.points.len()]];
-        if self.has_slope {
-            functions.push(self.points.iter().map(|[time, ..]| *time).collect());
+    /// The mean of an oscillator, its depth that explains most of what is left, and how much of the squares that is.
+    fn depth(&self, oscillator: &Oscillator) -> [f64; 3] {
+        let mut sums = [0.0; 5];
+        for [time, rest, weight] in &self.rest {
+            let value = oscillator.at(*time);
+            let more = [1.0, value, value * value, *rest, value * rest];
+            sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += weight * more);
         }
-        let steady = functions.len();
-        functions.extend(self.oscillators.iter().map(|oscillator| self.values(oscillator)));
-        let values: Vec<f64> = self.points.iter().map(|[_, value, _]| *value).collect();
-        let matrix = DMatrix::from_fn(functions.len(), functions.len(), |row, column| {
-            self.product(&functions[row], &functions[column]) + if row == column { RIDGE } else { 0.0 }
-        });
-        let right =
-            DVector::from_iterator(functions.len(), functions.iter().map(|function| self.product(function, &values)));
-        let factors = matrix.cholesky().map_or(DVector::zeros(functions.len()), |factors| factors.solve(&right));
-        let explained =
-            |n: usize| functions.iter().zip(factors.iter()).map(|(function, factor)| factor * function[n]).sum::<f64>();
-        self.rest = (0..values.len()).map(|n| values[n] - explained(n)).collect();
-        self.factors = factors.iter().skip(steady).copied().collect();
-        self.base.clear();
-        for mut function in functions {
-            for base in &self.base {
-                let share = self.product(&function, base);
-                function.iter_mut().zip(base).for_each(|(value, base)| *value -= share * base);
-            }
-            let norm = libm::sqrt(self.product(&function, &function));
-            if norm > RIDGE {
-                function.iter_mut().for_each(|value| *value /= norm);
-                self.base.push(function);
-            }
-        }
+        let [all, value, square, rest, product] = sums;
+        let (along, own) = (product - value * rest / all, (square - value * value / all).max(f64::MIN_POSITIVE));
+        [value / all, along / own, along * along / own]
     }
 
-    /// The squares that one more oscillator would explain.
-    fn gain(&self, oscillator: &Oscillator) -> f64 {
-        let values = self.values(oscillator);
-        let along = self.product(&values, &self.rest);
-        let known: f64 = self.base.iter().map(|base| self.product(&values, base)).map(|share| share * share).sum();
-        let own = self.product(&values, &values) - known;
-        if own > DIFFERENT * (own + known) { along * along / own } else { 0.0 }
+    /// Takes an oscillator out of what is left.
+    fn take(&mut self, mut oscillator: Oscillator) {
+        let [mean, depth, _] = self.depth(&oscillator);
+        self.rest.iter_mut().for_each(|[time, rest, _]| *rest -= depth * (oscillator.at(*time) - mean));
+        oscillator.phase -= libm::floor(oscillator.phase);
+        self.found.push((oscillator, depth));
     }
 
     /// Adds the oscillator that explains most of the rest, if that is worth it.
-    fn add(&mut self, tell: &mut dyn FnMut() -> bool) -> Result<bool> {
-        let seconds = self.seconds();
-        let count = ((self.fastest * seconds - FEWEST_CYCLES) / STEP).max(0.0) as usize;
+    fn add(&mut self, fastest: f64, tell: &mut dyn FnMut() -> bool) -> Result<bool> {
+        let Some(seconds) = self.rest.last().zip(self.rest.first()).map(|(last, first)| last[0] - first[0]) else {
+            return Ok(false);
+        };
+        let count = ((fastest * seconds - FEWEST_CYCLES) / STEP).max(0.0) as usize;
         let mut best: (f64, Option<Oscillator>) = (0.0, None);
         for rate in (0..count).map(|n| (FEWEST_CYCLES + STEP * n as f64) / seconds) {
             if !tell() {
@@ -158,39 +105,31 @@ impl Track {
             for (shape, phases) in SHAPES {
                 for phase in (0..phases).map(|n| n as f64 / PHASES) {
                     let oscillator = Oscillator { shape, rate, phase, semitones: 0.0, db: 0.0 };
-                    let gain = self.gain(&oscillator);
+                    let [.., gain] = self.depth(&oscillator);
                     if gain > best.0 {
                         best = (gain, Some(oscillator));
                     }
                 }
             }
         }
-        let (mut gain, Some(mut oscillator)) = best else { return Ok(false) };
-        let mut step = FIRST;
-        for _ in 0..ROUNDS {
-            for (faster, later) in [(step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step), (step, -step), (-step, step)]
-            {
-                let rate = (oscillator.rate + STEP * faster / seconds).min(self.fastest);
-                let moved = Oscillator { rate, phase: oscillator.phase + 2.0 * later / PHASES, ..oscillator };
-                let gained = self.gain(&moved);
-                if gained > gain {
-                    (gain, oscillator) = (gained, moved);
-                }
-            }
-            step *= SHRINKAGE;
-        }
-        let is_worth = gain > WORTH * self.left();
+        let (_, Some(coarse)) = best else { return Ok(false) };
+        let moved = |[faster, later]: [f64; 2]| Oscillator {
+            rate: (coarse.rate + 2.0 * STEP * faster / seconds).min(fastest),
+            phase: coarse.phase + 2.0 * later / PHASES,
+            ..coarse
+        };
+        let (place, gain) = simplex::least(STEPS, |place| Ok(-self.depth(&moved(place))[2]))?;
+        let is_worth = -gain > WORTH * self.left();
         if is_worth {
-            oscillator.phase -= libm::floor(oscillator.phase);
-            self.oscillators.push(oscillator);
-            self.solve();
+            self.take(moved(place));
         }
         Ok(is_worth)
     }
 
-    /// Adds oscillators, and tells whether all of them explain most of the track.
-    fn explain(&mut self, tell: &mut dyn FnMut() -> bool) -> Result<bool> {
-        while self.oscillators.len() < MOST_OSCILLATORS && self.left() > LITTLE * self.squares && self.add(tell)? {}
+    /// Takes out what is `known`, adds oscillators, and tells whether all of them explain most of the track.
+    fn explain(&mut self, known: &[(Oscillator, f64)], tell: &mut dyn FnMut() -> bool) -> Result<bool> {
+        known.iter().for_each(|(oscillator, _)| self.take(*oscillator));
+        while self.found.len() < MOST_OSCILLATORS && self.left() > LITTLE * self.squares && self.add(FASTEST, tell)? {}
         Ok(self.left() < (1.0 - WORTH_ALL) * self.squares)
     }
 }
@@ -199,32 +138,35 @@ impl Track {
 /// `tell` is called often, and ends the search by returning `false`.
 pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> bool) -> Result<(Vec<Oscillator>, Sweep)> {
     let pitches = pitch_track::pitches(&take.mean);
-    let mut pitch = Track::new(pitches.clone(), false, Vec::new());
+    let mut pitch = Track::new(pitches.clone(), false);
     let mut swept = Sweep::NONE;
-    let of_pitch = if pitch.moves(LEAST_SEMITONES) && pitch.explain(tell)? {
-        let left: Vec<Point> = pitches.iter().zip(&pitch.rest).map(|([time, ..], rest)| [*time, *rest, 1.0]).collect();
+    if pitch.moves(LEAST_SEMITONES) && pitch.explain(&[], tell)? {
+        let left: Vec<Point> = pitch.rest.iter().map(|[time, rest, _]| [*time, *rest, 1.0]).collect();
         let (sweep, _) = pitch_track::of_pitch(&left);
         if sweep.semitones != 0.0 {
             let envelope = sweep.envelope();
             let without = pitches.into_iter().map(|[time, pitch, weight]| [time, pitch - envelope.at(time), weight]);
-            let mut again = Track::new(without.collect(), false, Vec::new());
-            if again.explain(tell)? && again.left() < pitch.left() {
+            let mut again = Track::new(without.collect(), false);
+            if again.explain(&[], tell)? && again.left() < pitch.left() {
                 (pitch, swept) = (again, Sweep { vibrato: Sweep::NONE.vibrato, ..sweep });
             }
         }
-        pitch.oscillators.clone()
     } else {
-        Vec::new()
+        pitch.found.clear();
+    }
+    let mut level = Track::new(levels(&take.mean), true);
+    if !level.moves(LEAST_DB) || !level.explain(&pitch.found, tell)? {
+        level.found.clear();
+    }
+    // The level's begin with the pitch's, if there are any.
+    let all = if level.found.is_empty() { &pitch.found } else { &level.found };
+    let depth = |track: &Track, n: usize| track.found.get(n).map_or(0.0, |(_, depth)| *depth);
+    let oscillator = |(n, (oscillator, _)): (usize, &(Oscillator, f64))| Oscillator {
+        semitones: depth(&pitch, n),
+        db: depth(&level, n),
+        ..*oscillator
     };
-    let mut level = Track::new(levels(&take.mean), true, of_pitch.clone());
-    let explained = level.moves(LEAST_DB) && level.explain(tell)?;
-    let oscillators = if explained { level.oscillators.clone() } else { of_pitch.clone() };
-    let oscillator = |(n, oscillator): (usize, Oscillator)| Oscillator {
-        semitones: if n < of_pitch.len() { pitch.factors[n] } else { 0.0 },
-        db: if explained { level.factors[n] } else { 0.0 },
-        ..oscillator
-    };
-    let found: Vec<Oscillator> = oscillators.into_iter().enumerate().map(oscillator).collect();
+    let found: Vec<Oscillator> = all.iter().enumerate().map(oscillator).collect();
     let sum = |depth: fn(&Oscillator) -> f64| found.iter().map(depth).map(f64::abs).sum::<f64>();
     let is_playable = sum(|found| found.semitones) < MOST_SEMITONES && sum(|found| found.db) < MOST_DB;
     Ok(if is_playable { (found, swept) } else { (Vec::new(), Sweep::NONE) })
@@ -233,10 +175,11 @@ pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> bool) -> Result<(V
 /// The tremolo that explains a track of levels of tones in dB best, if it explains most of it. `tell` is called often, and ends the
 /// search by returning `false`.
 pub(super) fn tremolo(levels: Vec<Point>, tell: &mut dyn FnMut() -> bool) -> Result<Option<Oscillator>> {
-    let mut level = Track { fastest: FASTEST_OF_TONES, ..Track::new(levels, true, Vec::new()) };
-    let is_found = level.points.len() >= FEWEST && level.add(tell)? && level.left() < (1.0 - WORTH_ALL) * level.squares;
-    let tremolo = level.oscillators.first().zip(level.factors.first());
-    Ok(tremolo.filter(|_| is_found).map(|(oscillator, db)| Oscillator { db: *db, ..*oscillator }))
+    let mut level = Track::new(levels, true);
+    let is_found = level.rest.len() >= FEWEST
+        && level.add(FASTEST_OF_TONES, tell)?
+        && level.left() < (1.0 - WORTH_ALL) * level.squares;
+    Ok(level.found.pop().filter(|_| is_found).map(|(oscillator, db)| Oscillator { db, ..oscillator }))
 }
 
 /// The levels of samples in dB, from their onset on.
@@ -267,10 +210,10 @@ mod tests {
         ];
         let value = |t: f64| -20.0 - 3.0 * t + known.iter().map(|known| known.db * known.at(t)).sum::<f64>();
         let points = (0..800).map(|n| 0.0025 * f64::from(n)).map(|t| [t, value(t), 1.0]).collect();
-        let mut track = Track::new(points, true, Vec::new());
-        assert!(track.explain(&mut || true).unwrap());
-        assert_eq!(track.oscillators.len(), 2);
-        for ((found, factor), known) in track.oscillators.iter().zip(&track.factors).zip(&known) {
+        let mut track = Track::new(points, true);
+        assert!(track.explain(&[], &mut || true).unwrap());
+        assert_eq!(track.found.len(), 2);
+        for ((found, factor), known) in track.found.iter().zip(&known) {
             let off = libm::remainder(found.phase - known.phase, 1.0).abs();
             let is_near = found.shape == known.shape && (found.rate / known.rate - 1.0).abs() < 0.02 && off < 0.03;
             assert!(is_near && (factor / known.db - 1.0).abs() < 0.1, "{found:?} {factor}, {known:?}");

@@ -1,6 +1,5 @@
 //! Prepares a take: from its onset to its end or to where its key is let go, and what it is like.
 
-use super::bursts;
 use super::draft::longest_t60;
 use super::release::Release;
 use super::take::{BLOCK, LONGEST, Take};
@@ -29,8 +28,6 @@ const AS_LOUD: f64 = 0.2;
 /// heard that its key is let go, since beats lower it.
 const STEADY: f64 = 0.5;
 const STEADY_IF_LET_GO: f64 = 0.2;
-/// Seconds from the last of a row of bursts within which a fall is not a release.
-const NEAR_LAST: f64 = 0.1;
 /// Seconds before a key is let go at which the part ends that is fitted.
 const GUARD: f64 = 0.03;
 
@@ -96,12 +93,7 @@ impl Prepared {
         if ((end - onset) as f64) < SHORTEST * f64::from(RATE) {
             return wrong("it is shorter than 30 ms: expected a strike that rings");
         }
-        // After the last of a row of bursts a sound falls by itself.
-        let is_last = |release: &Release| {
-            let row = bursts::train(&middle[onset..end]);
-            row.is_some_and(|row| libm::fabs(release.seconds - row.last()) < NEAR_LAST)
-        };
-        let release = Release::of_held(&middle[onset..end]).filter(|release| !is_last(release));
+        let release = Release::of_held(&middle[onset..end]);
         let played = release.map_or(blocks, |release| release.frames() / block);
         let third = (played / 3).max(1);
         let energy = |levels: &[f64]| levels.iter().map(|level| level * level).sum::<f64>();

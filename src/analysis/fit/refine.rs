@@ -1,7 +1,7 @@
 //! Brings a draft nearer to its recording: plays it, compares both band by band, and corrects the draft.
 
 use super::audition::{Audition, Played};
-use super::correct::{by_bands, by_levels, by_moments};
+use super::correct::{by_bands, by_moments};
 use super::draft::Draft;
 use super::prepared::Prepared;
 use crate::analysis::log_mel::{HOP, LogMel, MelBands, WINDOW, from_onset};
@@ -15,9 +15,8 @@ const ATTACK: usize = 26;
 const LATE: usize = 1024;
 /// Shares by which the numbers of a draft are changed, one after the other.
 const STEPS: [f64; 3] = [0.4, 0.2, 0.1];
-/// Corrections of a draft with its noise, and of levels, before it is judged.
+/// Corrections of a draft with its noise before it is judged.
 const FEW_ROUNDS: usize = 2;
-const LEVELLINGS: usize = 3;
 
 /// What of a draft is judged, and corrected before.
 #[derive(Clone, Copy, PartialEq)]
@@ -26,8 +25,6 @@ pub(super) enum Judged {
     ByAttack,
     /// All of it.
     AsItIs,
-    /// All of it with corrected levels: decays would take over what is wrong in a noise that lasts as long as the sound.
-    ByLevels,
     /// All of it with corrected modes if its noise is audible, since their decays are measured together with that.
     ByModes,
 }
@@ -99,7 +96,6 @@ impl<'a> Listener<'a> {
     /// The distance of a draft that is judged so, and corrected before.
     fn judge(&mut self, draft: &mut Draft, by: Judged) -> Result<f64> {
         match by {
-            Judged::ByLevels => self.correct_levels(draft),
             Judged::ByModes if draft.noise.is_audible() => self.correct(draft, FEW_ROUNDS),
             _ => self.distance(draft, by.windows()),
         }
@@ -141,22 +137,6 @@ impl<'a> Listener<'a> {
             if distance < least {
                 (*draft, least) = (other, distance);
             }
-        }
-        Ok(least)
-    }
-
-    /// Corrects the levels alone of the modes of a draft, and returns its distance.
-    pub(super) fn correct_levels(&mut self, draft: &mut Draft) -> Result<f64> {
-        let mut heard = self.hear(draft)?;
-        let mut least = heard.distance(&self.target);
-        for _ in 0..LEVELLINGS {
-            let other = by_levels(draft, &self.target, &heard);
-            heard = self.hear(&other)?;
-            let distance = heard.distance(&self.target);
-            if distance >= least {
-                break;
-            }
-            (*draft, least) = (other, distance);
         }
         Ok(least)
     }

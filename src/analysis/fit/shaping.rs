@@ -147,15 +147,6 @@ impl Listener<'_> {
         self.keep(draft, Judged::AsItIs, rises)
     }
 
-    /// Changes length, rise and fall of a noise that lasts as long as the sound. Returns the distance.
-    pub(super) fn shape_lasting_noise(&mut self, draft: &mut Draft) -> Result<f64> {
-        self.correct_levels(draft)?;
-        self.descend(draft, Judged::ByLevels, |draft, step| {
-            let other = Draft { noise: otherwise(draft.noise), ..draft.clone() };
-            noises(draft, step).into_iter().chain([other]).collect()
-        })
-    }
-
     /// Changes length and rise of a noise that is heard as such, as long as the sound comes nearer.
     pub(super) fn shape_noise(&mut self, draft: &mut Draft) -> Result<()> {
         if draft.noise.is_audible() && draft.partials.iter().any(|partial| !partial.struck) {

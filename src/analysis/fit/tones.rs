@@ -24,13 +24,22 @@ const MOST: usize = 64;
 pub(super) struct Tone {
     /// Hz.
     pub(super) frequency: f64,
-    /// Real and imaginary part of its amplitude at each moment, relative to a steady tone or to a model, with a weight.
+    /// Real and imaginary part of its amplitude at each moment, relative to a steady tone, with a weight: its power, up to the mean.
     track: Vec<([f64; 2], f64)>,
     /// Cycles of the tone from one moment to the next.
     turns: f64,
 }
 
 impl Tone {
+    /// The tone near a frequency in Hz in samples at [`RATE`].
+    pub(super) fn of(samples: &[f32], frequency: f64) -> Self {
+        let followed = followed(samples, frequency);
+        let power = |[re, im]: [f64; 2]| re * re + im * im;
+        let mean = followed.iter().map(|own| power(*own)).sum::<f64>() / followed.len() as f64 + 1e-30;
+        let track = followed.into_iter().map(|own| (own, (power(own) / mean).min(1.0))).collect();
+        Self { frequency, track, turns: frequency * HOP as f64 / f64::from(RATE) }
+    }
+
     /// The logarithm of its pitch at each moment, with its weight.
     pub(super) fn pitches(&self) -> Vec<[f64; 2]> {
         let last = self.track.len() - 1;
@@ -71,9 +80,8 @@ impl Tone {
     }
 }
 
-/// The tones of samples at [`RATE`], followed every [`HOP`] samples: their tracks, or if there is a model of the sound, how these
-/// differ from the model's.
-pub(super) fn tones(samples: &[f32], model: Option<&[f32]>) -> Vec<Tone> {
+/// The tones of samples at [`RATE`], followed every [`HOP`] samples.
+pub(super) fn tones(samples: &[f32]) -> Vec<Tone> {
     let levels = mean_spectrum(samples);
     let loudest = levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let is_tone = |bin: &usize| {
@@ -90,27 +98,7 @@ pub(super) fn tones(samples: &[f32], model: Option<&[f32]>) -> Vec<Tone> {
     let mut bins: Vec<usize> = (APART..levels.len()).filter(is_tone).collect();
     bins.sort_by(|a, b| levels[*b].total_cmp(&levels[*a]));
     bins.truncate(MOST);
-    let tone = |bin: usize| {
-        let frequency = bin as f64 * f64::from(RATE) / POINTS as f64;
-        let own = followed(samples, frequency);
-        let reference = model.map(|model| followed(model, frequency));
-        Tone { frequency, track: against(&own, reference.as_deref()), turns: frequency * HOP as f64 / f64::from(RATE) }
-    };
-    bins.into_iter().map(tone).collect()
-}
-
-/// Amplitudes at each moment relative to those of a model, if there is one, each with a weight: its power, up to the mean.
-fn against(own: &[[f64; 2]], model: Option<&[[f64; 2]]>) -> Vec<([f64; 2], f64)> {
-    let power = |[re, im]: [f64; 2]| re * re + im * im;
-    let known = model.unwrap_or(own);
-    let mean = known.iter().map(|known| power(*known)).sum::<f64>() / known.len() as f64 + 1e-30;
-    let relative = |(n, own): (usize, &[f64; 2])| {
-        let weight = (power(known[n]) / mean).min(1.0);
-        let Some([re, im]) = model.map(|model| model[n]) else { return (*own, weight) };
-        let scale = 1.0 / power([re, im]).max(1e-12 * mean);
-        ([scale * (own[0] * re + own[1] * im), scale * (own[1] * re - own[0] * im)], weight)
-    };
-    own.iter().enumerate().map(relative).collect()
+    bins.into_iter().map(|bin| Tone::of(samples, bin as f64 * f64::from(RATE) / POINTS as f64)).collect()
 }
 
 /// The mean power of the sound in each bin, in dB.
