@@ -38,7 +38,7 @@ pub(crate) const CHECKS: &[Step] = &[
 /// What is built for the tests, at once and with all features, so that nothing is compiled a second time with others.
 pub(crate) const TESTED: &str = "--workspace --all-features --lib --bins --tests";
 
-/// The examples in the documentation, which nextest does not run.
+/// The examples in the documentation, which [`TESTED`] leaves out.
 pub(crate) const EXAMPLES: Step = tests("examples", &["test --doc --workspace --all-features"]);
 
 /// What takes longer than a commit should wait for.
