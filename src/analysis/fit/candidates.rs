@@ -8,7 +8,7 @@ use super::start::{Found, Source};
 use super::{held, oscillators, start, sweep};
 use crate::error::Result;
 
-/// Residual of the modes in dB above which noise alone may explain the sound better.
+/// Residual of the modes in dB above which noise may excite them.
 const NOISE_DB: f64 = -10.0;
 /// Residual of the modes in dB below which they tell where the sound is damped.
 const TELLS_DAMPER_DB: f64 = -25.0;

@@ -26,6 +26,8 @@ const STEPS: usize = 30;
 const WORTH: f64 = 0.25;
 const WORTH_ALL: f64 = 0.6;
 const LITTLE: f64 = 0.01;
+/// Share of an oscillator's square that must differ from its mean.
+const DIFFERENT: f64 = 1e-3;
 /// Samples from one level to the next, and range of levels in dB.
 const HOP: usize = 128;
 const RANGE_DB: f64 = 45.0;
@@ -37,7 +39,7 @@ const FEWEST: usize = 100;
 const MOST_SEMITONES: f64 = 48.0;
 const MOST_DB: f64 = 36.0;
 
-/// A track that is explained by a line and oscillators.
+/// A track that is explained by its mean, or a line if it may fall, and by oscillators, each found in what the earlier ones leave.
 struct Track {
     /// What is left of each value.
     rest: Vec<Point>,
@@ -79,7 +81,11 @@ impl Track {
             sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += weight * more);
         }
         let [all, value, square, rest, product] = sums;
-        let (along, own) = (product - value * rest / all, (square - value * value / all).max(f64::MIN_POSITIVE));
+        let (along, own) = (product - value * rest / all, square - value * value / all);
+        // Where a square is heard in one half of its cycles only, it is constant, and what is left of it are errors of rounding.
+        if own.is_nan() || own <= DIFFERENT * square {
+            return [0.0; 3];
+        }
         [value / all, along / own, along * along / own]
     }
 
@@ -114,7 +120,7 @@ impl Track {
         }
         let (_, Some(coarse)) = best else { return Ok(false) };
         let moved = |[faster, later]: [f64; 2]| Oscillator {
-            rate: (coarse.rate + 2.0 * STEP * faster / seconds).min(fastest),
+            rate: (coarse.rate + 2.0 * STEP * faster / seconds).clamp(FEWEST_CYCLES / seconds, fastest),
             phase: coarse.phase + 2.0 * later / PHASES,
             ..coarse
         };
@@ -245,6 +251,14 @@ mod tests {
             })
         };
         assert!(known.iter().all(near), "{found:?}");
+    }
+
+    #[test]
+    fn a_square_that_is_heard_in_half_of_its_cycles_explains_nothing() {
+        let heard = (0..400).map(|n| 0.0025 * f64::from(n)).filter(|t| (10.0 * t).fract() < 0.45);
+        let track = Track::new(heard.map(|t| [t, libm::sin(37.0 * t), 1.0]).collect(), false);
+        let square = Oscillator { shape: Shape::Square, rate: 10.0, phase: 0.0, semitones: 0.0, db: 0.0 };
+        assert_eq!(track.depth(&square), [0.0; 3]);
     }
 
     #[test]
