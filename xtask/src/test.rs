@@ -51,9 +51,9 @@ pub(crate) fn run(suite: Suite, only: &str) -> Result<(), String> {
     if total.failed == 0 { Ok(()) } else { Err("the suite failed".to_owned()) }
 }
 
-/// Runs the tests of all packages, the plugin as bundled in real hosts among them. With the harness: tests of one process share
-/// the bank and the fonts, which each of nextest's would read anew. Some that wait for what is on a screen must not wait beside
-/// others, which only nextest knows.
+/// Runs the tests of all packages, the plugin as bundled in real hosts among them. A commit's run with the harness, so that those of
+/// a program share the bank and the fonts. All tests run with nextest where it is installed, since it alone can keep those that
+/// watch a screen from running beside others.
 fn tests(suite: Suite) -> Result<Count, String> {
     if !cfg!(target_os = "linux") {
         let mut total = count(cargo(ELSEWHERE[0]), Shows::Tests)?;

@@ -28,14 +28,9 @@ pub(super) fn by_bands(draft: &Draft, target: &LogMel, heard: &LogMel, share: f6
     }
     let corrections: [Correction; BANDS] =
         std::array::from_fn(|band| correction(errors.of(band).map(|(n, error)| (n, error, 1.0))));
-    corrected_by_bands(draft, share, &corrections)
-}
-
-/// The draft with a share of each band's correction.
-fn corrected_by_bands(draft: &Draft, share: f64, corrections: &[Correction; BANDS]) -> Draft {
     corrected(draft, share, |partial| {
         let weights = weights(partial.heard_at(&draft.sweep));
-        let both = weights.iter().zip(corrections);
+        let both = weights.iter().zip(&corrections);
         both.fold((0.0, 0.0), |sum, (weight, correction)| {
             (sum.0 + weight * correction.0, sum.1 + weight * correction.1)
         })

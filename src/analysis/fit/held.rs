@@ -51,7 +51,7 @@ fn compared(sound: &[f32], rest: &[f32]) -> Vec<(Tone, Tone)> {
 }
 
 /// Replaces the modes of each tone by a steady mode if that is nearer to the track of its level. `pairs` are those of
-/// [`compared`], of a sound that begins with a sample `from` the onset. The draft gets no more than `most` modes.
+/// [`compared`], of the stretch that was analysed, which begins with a sample `from` the onset. The draft gets no more than `most` modes.
 fn steady(draft: &mut Draft, most: usize, pairs: &[(Tone, Tone)], from: usize) {
     let moments = |seconds: f64| seconds * f64::from(RATE) / HOP as f64;
     for (tone, modes) in pairs {

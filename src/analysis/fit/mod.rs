@@ -2,11 +2,10 @@
 //!
 //! The sweep of the pitch is found and removed; of a held sound, all drift that its tones have in common. The sound,
 //! whose pitch is now constant, is analysed into modes. Their residual becomes a bed: modes that noise excites. If
-//! modes explain a sound badly, noise excites those found once it is over, and regular movement becomes that of
-//! low-frequency oscillators. Then each draft is played and compared with the recording, band by
-//! band ([`super::log_mel`]), to
-//! correct the mallet's hardness, the rise, fall and length of swells and of noise, levels and decays. The nearest
-//! draft is the result.
+//! modes explain a sound badly, another draft has noise in place of a strike, and its modes are looked for after the
+//! first fifth of the sound; and regular movement becomes that of low-frequency oscillators. Then each draft is played
+//! and compared with the recording, band by band ([`super::log_mel`]), to correct the mallet's hardness, the rise, fall
+//! and length of swells and of noise, levels and decays. The nearest draft is the result.
 //!
 //! | file | does |
 //! |---|---|

@@ -112,16 +112,18 @@ impl<'a> Listener<'a> {
         self.nearest(draft, least, by, others).map(drop)
     }
 
-    /// Changes a draft by steps of [`STEPS`] as long as it comes nearer: `near` gives the drafts that are a step from one. Returns the
-    /// distance.
+    /// Changes a draft by steps of [`STEPS`] as long as it comes nearer: `near` gives the drafts that are a step from one.
     pub(super) fn descend(
         &mut self,
         draft: &mut Draft,
         by: Judged,
         near: impl Fn(&Draft, f64) -> Vec<Draft>,
-    ) -> Result<f64> {
-        let least = self.distance(draft, by.windows())?;
-        STEPS.into_iter().try_fold(least, |least, step| self.nearest(draft, least, by, near(draft, step)))
+    ) -> Result<()> {
+        let mut least = self.distance(draft, by.windows())?;
+        for step in STEPS {
+            least = self.nearest(draft, least, by, near(draft, step))?;
+        }
+        Ok(())
     }
 
     /// Replaces a draft at a distance by the nearest of `others`, if that is nearer. Returns the distance.

@@ -86,8 +86,7 @@ impl Listener<'_> {
         self.descend(draft, Judged::ByAttack, |draft, step| {
             let beside = |hardness: f64| [-step, step].map(|by| (hardness + HARDER * by).clamp(0.0, 1.0));
             draft.hardness.into_iter().flat_map(beside).map(|hardness| with(draft, hardness)).collect()
-        })?;
-        Ok(())
+        })
     }
 
     /// Chooses the rise of a sound that is not struck, and its fall if it does not stay at its level.
@@ -105,8 +104,7 @@ impl Listener<'_> {
             let falls = FALLS.map(|fall| with(draft, Swell { fall: Some(fall), ..swell }));
             self.keep(draft, Judged::AsItIs, falls)?;
         }
-        self.descend(draft, Judged::AsItIs, swells)?;
-        Ok(())
+        self.descend(draft, Judged::AsItIs, swells)
     }
 
     /// Keeps the oscillators only if the sound is nearer with them, and changes the depths in which they move the level.

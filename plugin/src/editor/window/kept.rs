@@ -45,7 +45,7 @@ mod tests {
         what_is_kept_nowhere(1);
     }
 
-    /// With each `step`-th sound of the factory's.
+    /// With each `step`-th preset of the factory's, and all kits.
     fn what_is_kept_nowhere(step: usize) {
         let folder = tempfile::tempdir().unwrap();
         let library = Library::at(folder.path());
@@ -58,8 +58,8 @@ mod tests {
             let of = |sound: Playable| params.suited(State::new(sound, 0, params.view()));
             let factorys = |name: &str| of(Playable::find(name).unwrap());
             let kits = KitPreset::factory().iter().map(|kit| kit.name.as_str());
-            let names = Preset::factory().iter().map(|preset| preset.name.as_str()).chain(kits);
-            for name in names.step_by(step) {
+            let presets = Preset::factory().iter().map(|preset| preset.name.as_str());
+            for name in presets.step_by(step).chain(kits) {
                 assert!(!is_lost(factorys(name)), "{name}");
             }
             let Playable::Preset(preset) = factorys("Marimba").playable else { unreachable!() };
